@@ -15,7 +15,7 @@ from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, Samples, System
-from mjrock.distinct.team import teams_of
+from mjrock.distinct.thread import threads_of
 from mjrock.geometry.frames import SPACE
 from mjrock.scene.course import Ground
 
@@ -47,7 +47,7 @@ def followed(system, duration, h, every):
     last = every * round(duration / (h * every))
     system, books = copied(system), Books.empty(system, 1)
     samples = Samples.room(last // every + 1, system, books)
-    alone = teams_of(system.bodies, system.lines, 1)[0][0]
+    alone = threads_of(system.bodies, system.lines, 1)[0][0]
     advance(system, books, samples, Clock(0, h, every, 0, last + 1, last, math.inf, 0.0, (0.0, 0.0, 0.0)), alone)
     return samples.taken(slice(-1)), system
 

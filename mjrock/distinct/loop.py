@@ -48,7 +48,7 @@ from .rows import Rows
 from .spans import bodies_of_span, list_touched, press_by_laws, press_own_lines, sum_up
 from .supports import move_supports
 from .system import Books, Samples, System
-from .team import Team, bring_together, end_all, has_ended, wait
+from .thread import Thread, bring_together, end_all, has_ended, wait
 
 BROKEN_DOWN = 1e6
 """Displacement beyond which a run has broken down [m]."""
@@ -259,27 +259,27 @@ def step_of(clock: Clock, n: int, row: int, samples: Samples) -> Step:
 
 
 @inlined
-def add_forces(system: System, books: Books, samples: Samples, clock: Clock, team: Team, step: Step) -> int:
+def add_forces(system: System, books: Books, samples: Samples, clock: Clock, thread: Thread, step: Step) -> int:
     """Add all forces at the pose but rigid friction. Returns how many lines stick rigidly."""
     t, h, before = step.t, clock.h, step.before
-    if team.number == 0:
+    if thread.number == 0:
         move_supports(system.supports, t, before)
     push = scaled(h / step.kick, accelerated(system.ground, t, h, read(system.bodies[0].place)))
     if t == 0:
         push = plus(push, scaled(0.5 * before / step.kick, clock.pushed))
-    for span in range(team.own_bodies[0], team.own_bodies[1]):
-        some, own = bodies_of_span(system, books, team, span)
+    for span in range(thread.own_bodies[0], thread.own_bodies[1]):
+        some, own = bodies_of_span(system, books, thread, span)
         start_forces(some, own, push, before)
-    wait(team)
+    wait(thread)
     if has_links(samples):
-        if team.number == 0:
+        if thread.number == 0:
             act_all(system.links, system, books, t, before)
             if step.sampled:
                 record_guide_loads(system, samples, step.kept)
-        wait(team)
-    press_by_laws(system.laws, system, books, team, t, before)
-    sticking = press_own_lines(system, books, team, before, step.kick, clock.lead)
-    bring_together(team, books.apart, system.bodies)
+        wait(thread)
+    press_by_laws(system.laws, system, books, thread, t, before)
+    sticking = press_own_lines(system, books, thread, before, step.kick, clock.lead)
+    bring_together(thread, books.apart, system.bodies)
     return sticking
 
 
@@ -315,41 +315,41 @@ def settle_step(
 
 
 @compiled_at_once
-def advance(system: System, books: Books, samples: Samples, clock: Clock, team: Team) -> tuple[int, int, bool]:
+def advance(system: System, books: Books, samples: Samples, clock: Clock, thread: Thread) -> tuple[int, int, bool]:
     """Steps up to that before which to stop. Samples and checks are made at fixed numbers of steps, and at the last.
 
     Each thread of a run calls it. Returns the number of the next step and of the next sample, and
     whether the run has ended.
     """
     n, row = clock.step, clock.row
-    first, last = team.bodies[team.own_bodies[0]], team.bodies[team.own_bodies[1]]
+    first, last = thread.bodies[thread.own_bodies[0]], thread.bodies[thread.own_bodies[1]]
     own = system.bodies[first:last]
     while n < clock.stop:
         step = step_of(clock, n, row, samples)
-        sticking = add_forces(system, books, samples, clock, team, step)
-        touched = list_touched(books, team)
+        sticking = add_forces(system, books, samples, clock, thread, step)
+        touched = list_touched(books, thread)
         kept = step.sampled or step.checked
         if kept or clock.local > 0:
-            wait(team)
-            if team.number == 0:
+            wait(thread)
+            if thread.number == 0:
                 if kept:
                     record_pose(system, books, samples, step.kept, step.before)
                 if clock.local > 0:
                     damp_unbalanced(system, books, clock.local, step.kick)
-            wait(team)
+            wait(thread)
         kick_bodies(own, step.kick)
         if kept or sticking > 0 or touched > 0 or clock.drag > 0 or has_links(samples):
-            wait(team)
-            if team.number == 0:
+            wait(thread)
+            if thread.number == 0:
                 settle_step(system, books, samples, clock, step, sticking, touched)
                 if step.checked:
                     samples.checks[-(-n // clock.check)] = samples.energy[step.kept]
                 if step.sampled and is_astray(system.bodies, clock.ends):
-                    end_all(team)
-            wait(team)
+                    end_all(thread)
+            wait(thread)
         if step.sampled:
             row += 1
-            if has_ended(team):
+            if has_ended(thread):
                 return n, row, True
         move_bodies(own, clock.h)
         n += 1

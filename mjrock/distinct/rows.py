@@ -39,7 +39,7 @@ class Kinds(NamedTuple):
         total: what is booked for all lines together [J]: `friction`, what is in the shear springs included, `ground`,
             the work of ground and supports, and `TAKEN_BY_LAWS`; `push` is the acceleration of the ground in the last
             step [m/s2].
-        apart: force and moment of a line on a body that wait until all threads have pressed, see `team`.
+        apart: force and moment of a line on a body that wait until all threads have pressed, see `thread`.
     """
 
     body: np.dtype[np.void]
@@ -119,7 +119,7 @@ def _line(d: int, s: int) -> Fields:
         *numbers("depth", "rate"),  # overlap, and growth of the gap, in the last step [m, m/s]
         *vectors(s, "dragged"),  # friction of the shear spring in the last step [N]
         *vectors(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
-        *short_integers("apart", "face_apart"),  # its rows of forces that wait, 0 for none, see `team`
+        *short_integers("apart", "face_apart"),  # its rows of forces that wait, 0 for none, see `thread`
         *short_integers("past"),  # 1 for a line that was past the end of its face then
         # what a step reads where a line touches or slides off
         *short_integers("fixed"),  # number of the fixed block of its face among these, -1 where that is a body

@@ -1,4 +1,4 @@
-"""What a thread does span by span: its bodies and lines, with the books of each span, see `team`."""
+"""What a thread does span by span: its bodies and lines, with the books of each span, see `thread`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..quantities import Array, Integers
 from .contacts.contact import press_lines
 from .rows import Row, Rows
 from .system import Books, System, Tables
-from .team import Team, bring_together, wait
+from .thread import Thread, bring_together, wait
 
 act = method("act")
 
@@ -61,67 +61,69 @@ def with_rows(system: System, bodies: Rows, lines: Rows, ways: Rows) -> System:
 
 
 @inlined
-def bodies_of_span(system: System, books: Books, team: Team, span: int) -> tuple[System, Books]:
+def bodies_of_span(system: System, books: Books, thread: Thread, span: int) -> tuple[System, Books]:
     """The bodies of a span, and its books."""
-    some = system.bodies[team.bodies[span] : team.bodies[span + 1]]
+    some = system.bodies[thread.bodies[span] : thread.bodies[span + 1]]
     own = books_of_span(books, span, books.dashpots, books.active, books.touched)
     return with_rows(system, some, system.lines, system.ways), own
 
 
 @inlined
-def books_of_lines(system: System, books: Books, team: Team, span: int, active: Integers, touched: Integers) -> Books:
+def books_of_lines(
+    system: System, books: Books, thread: Thread, span: int, active: Integers, touched: Integers
+) -> Books:
     """The books of a span of lines, with this room in the lists. Lines that share their group with the span before have
     an account of their own, see `Books.encounters`."""
-    first, dashpots = team.lines[span], books.dashpots
+    first, dashpots = thread.lines[span], books.dashpots
     if first > 0 and system.lines[first].group == system.lines[first - 1].group:
         dashpots = books.encounters[span : span + len(dashpots)]
     return books_of_span(books, span, dashpots, active, touched)
 
 
 @inlined
-def press_by_laws(laws: Tables, system: System, books: Books, team: Team, t: float, h: float) -> None:
+def press_by_laws(laws: Tables, system: System, books: Books, thread: Thread, t: float, h: float) -> None:
     """Let the laws of joints act on the lines of a thread at a time t, one after the other, and book what the last step
     of length h took."""
     if len(laws) > 0:
         if len(laws[0].rows) > 0:
-            for span in range(team.own_lines[0], team.own_lines[1]):
-                first, last = team.lines[span], team.lines[span + 1]
+            for span in range(thread.own_lines[0], thread.own_lines[1]):
+                first, last = thread.lines[span], thread.lines[span + 1]
                 some = with_rows(system, system.bodies, system.lines[first:last], system.ways)
-                own = books_of_lines(system, books, team, span, books.active, books.touched)
+                own = books_of_lines(system, books, thread, span, books.active, books.touched)
                 act(rows_within(laws[0], first, last), some, own, t, h)
-            bring_together(team, books.apart, system.bodies)
-            wait(team)
-        press_by_laws(laws[1:], system, books, team, t, h)
+            bring_together(thread, books.apart, system.bodies)
+            wait(thread)
+        press_by_laws(laws[1:], system, books, thread, t, h)
 
 
 @inlined
-def press_own_lines(system: System, books: Books, team: Team, h: float, kick: float, lead: float) -> int:
+def press_own_lines(system: System, books: Books, thread: Thread, h: float, kick: float, lead: float) -> int:
     """`press_lines` for the lines of a thread. Returns how many stick rigidly."""
     active, touched, ways = 0, 0, len(system.axes) - 1
-    start = team.starts[team.number]
-    for span in range(team.own_lines[0], team.own_lines[1]):
-        first, last = team.lines[span], team.lines[span + 1]
+    start = thread.starts[thread.number]
+    for span in range(thread.own_lines[0], thread.own_lines[1]):
+        first, last = thread.lines[span], thread.lines[span + 1]
         some = with_rows(system, system.bodies, system.lines[first:last], system.ways[ways * active :])
-        own = books_of_lines(system, books, team, span, books.active[active:], books.touched[start + touched :])
+        own = books_of_lines(system, books, thread, span, books.active[active:], books.touched[start + touched :])
         sticking, met = press_lines(some, own, h, kick, lead)
         for i in range(sticking):
             own.active[i] += first
         for i in range(met):
             own.touched[i] += first
         active, touched = active + sticking, touched + met
-    team.touched[team.number] = touched
+    thread.touched[thread.number] = touched
     return active
 
 
 @inlined
-def list_touched(books: Books, team: Team) -> int:
+def list_touched(books: Books, thread: Thread) -> int:
     """How many lines of all threads have met or left their face. The first thread lists them in their order."""
     count = 0
-    for thread in range(team.threads):
-        start = team.starts[thread]
-        for i in range(team.touched[thread] if team.number == 0 else 0):
+    for number in range(thread.threads):
+        start = thread.starts[number]
+        for i in range(thread.touched[number] if thread.number == 0 else 0):
             books.touched[count + i] = books.touched[start + i]
-        count += team.touched[thread]
+        count += thread.touched[number]
     return count
 
 

@@ -11,7 +11,7 @@ from ..quantities import Array, Integers
 from ..scene.course import Ground
 from .rows import TAKEN_BY_LAWS, Rows, joined, kinds, rows
 from .supports import Supports
-from .team import Team, teams_of
+from .thread import Thread, threads_of
 
 Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
@@ -60,7 +60,7 @@ class Books(NamedTuple):
             likewise.
         encounters: what the dashpots of lines book that a search has found, for each span but the first of these: that
             of span c is the number c + group.
-        apart: forces of lines that wait until all threads have pressed, see `team.put_apart`.
+        apart: forces of lines that wait until all threads have pressed, see `thread.put_apart`.
     """
 
     dashpots: Array
@@ -85,21 +85,21 @@ class Books(NamedTuple):
         """The books with room for the lines of a system."""
         return self.of_threads(system, 1)[0]
 
-    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Team, ...]]:
+    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Thread, ...]]:
         """The books with room for the lines of a system, and a number of threads for them."""
-        (teams, apart), lines = teams_of(system.bodies, system.lines, count), len(system.lines)
-        books, spans = self._replace(apart=apart), len(teams[0].lines) - 1
+        (threads, apart), lines = threads_of(system.bodies, system.lines, count), len(system.lines)
+        books, spans = self._replace(apart=apart), len(threads[0].lines) - 1
         if lines > len(self.active):
             active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
             books = books._replace(active=active, touched=touched, impulse=np.zeros(lines), remaining=np.zeros(lines))
-        more = max(spans, len(teams[0].bodies) - 1) - len(self.totals)
+        more = max(spans, len(threads[0].bodies) - 1) - len(self.totals)
         if more > 0:
             books = books._replace(totals=joined(self.totals, rows(self.totals.dtype, more)))
         if spans + len(self.dashpots) > len(self.encounters):
             encounters = np.zeros(spans + len(self.dashpots))
             encounters[: len(self.encounters)] = self.encounters
             books = books._replace(encounters=encounters)
-        return books, teams
+        return books, threads
 
     @property
     def size(self) -> int:

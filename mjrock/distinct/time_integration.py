@@ -14,7 +14,6 @@ from ..bars import Bar
 from ..compiled import for_types_of
 from ..quantities import warn_of
 from ..scene.explicit_step import stepping_seconds
-from .crew import Crew
 from .kinds.own import OwnLaws
 from .kinds.own_links import OwnLinks
 from .loop import Clock, advance
@@ -25,6 +24,7 @@ from .setup import Setup
 from .step_length import LEAD, TimeGrid
 from .supports import move_supports
 from .system import Books, Samples, System
+from .thread_pool import ThreadPool
 
 FIRST_CALL = 100_000
 """Steps of a line that the first call of the compiled steps makes."""
@@ -49,7 +49,7 @@ class Integration(NamedTuple):
 
 
 def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, threads: int | None = None) -> Integration:
-    """Make the steps in some threads, see `Crew`, with a progress bar where they take more than some seconds.
+    """Make the steps in some threads, see `ThreadPool`, with a progress bar where they take more than some seconds.
 
     Ctrl-C acts between two calls of the compiled steps. The number of steps of a call follows from the time of the
     last one.
@@ -69,7 +69,7 @@ def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, thre
     if memory is not None:
         clock, next_search = clock._replace(before=memory.before, pushed=memory.pushed), memory.until_search
     at_once, ended, memory = max(1, FIRST_CALL // max(1, len(system.lines))), False, None
-    with Bar("explicit steps", "s", grid.end) as bar, Crew(threads) as crew:
+    with Bar("explicit steps", "s", grid.end) as bar, ThreadPool(threads) as pool:
         while clock.step < stop and not ended:
             if clock.step == grid.last:
                 memory = remember(setup.of, system, clock, setup.blocks)
@@ -81,17 +81,17 @@ def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, thre
             begun = time.perf_counter()
             ahead = (next_search if search is not None else stop, clock.step + at_once)
             clock = clock._replace(stop=min(stop if clock.step == grid.last else grid.last, *ahead))
-            step, row, ended = crew.run(steps, system, books, samples, clock)
+            step, row, ended = pool.run(steps, system, books, samples, clock)
             took = time.perf_counter() - begun
             at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * CALL_TIME / took)))
             bar.to(step * clock.h)
             if steps is advance:  # what a search replaces has the same types
-                steps = for_types_of(advance, system, books, samples, clock, crew.team)
+                steps = for_types_of(advance, system, books, samples, clock, pool.thread)
             clock = clock._replace(step=step, row=row)
             for body in unsound(system.bodies)[:1].tolist():
                 moving = f"the motion of {setup.scene.bodies.names[body]}"
                 raise breakdown(next(broken_laws(setup, system), moving), step * clock.h)
-    return Integration(system, clock.step, clock.row, None if ended else memory, crew.used, crew.processor)
+    return Integration(system, clock.step, clock.row, None if ended else memory, pool.used, pool.processor)
 
 
 def update_search(search: ContactSearch, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:

@@ -20,11 +20,11 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.compiled import for_types_of
-from mjrock.distinct.crew import Crew
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.setup import setup_of
 from mjrock.distinct.system import Books, Samples
-from mjrock.distinct.team import teams_of
+from mjrock.distinct.thread import threads_of
+from mjrock.distinct.thread_pool import ThreadPool
 from mjrock.machine import cores
 from mjrock.quantities import Array
 from scripts.measure.steps.tasks import K_N, K_SPACE
@@ -60,12 +60,12 @@ class Turns:
 
     def __init__(self, case: mr.MasonryCase, threads: int) -> None:
         setup = setup_of(case, None, None)
-        self.system, self.crew = setup.system, Crew(threads)
+        self.system, self.pool = setup.system, ThreadPool(threads)
         self.books = Books.empty(self.system, len(setup.scene.contacts.joints) + 1)
         self.samples = Samples.room(2, self.system, self.books)
         start = (0.0,) * len(self.system.axes)
         self.clock = Clock(0, setup.step_length.default, 10**9, 0, 1, 10**9, math.inf, 0.0, start, 10**9)
-        (alone,), _ = teams_of(self.system.bodies, self.system.lines, 1)
+        (alone,), _ = threads_of(self.system.bodies, self.system.lines, 1)
         advance(self.system, self.books, self.samples, self.clock, alone)
         self.clock = self.clock._replace(step=1, row=1)
         self.steps = for_types_of(advance, self.system, self.books, self.samples, self.clock, alone)
@@ -74,7 +74,7 @@ class Turns:
         """Time of a step, from so many of them [s]."""
         begun = time.perf_counter()
         self.clock = self.clock._replace(stop=self.clock.step + count)
-        self.crew.run(self.steps, self.system, self.books, self.samples, self.clock)
+        self.pool.run(self.steps, self.system, self.books, self.samples, self.clock)
         self.clock = self.clock._replace(step=self.clock.stop)
         return (time.perf_counter() - begun) / count
 
@@ -92,9 +92,9 @@ def measured(kind: str, blocks: int, numbers: Sequence[int], rounds: int) -> lis
     count = max(5, int(BATCH / (3e-8 * len(lines))))
     taken = np.array([[turn.seconds(count) for turn in turns] for _ in range(rounds)]).min(axis=0)
     for turn in turns:
-        turn.crew.__exit__(None, None, None)
+        turn.pool.__exit__(None, None, None)
         if not (turn.place == turns[0].place).all():
-            raise RuntimeError(f"{kind} of {blocks} blocks: {turn.crew.threads} threads have other bits than one")
+            raise RuntimeError(f"{kind} of {blocks} blocks: {turn.pool.threads} threads have other bits than one")
     return [kind, len(case.masonry.free), len(lines), lines.dtype.itemsize, *taken / len(lines) * 1e9]
 
 

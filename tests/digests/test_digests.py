@@ -4,8 +4,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from mjrock.distinct import team, time_integration
-from mjrock.distinct.crew import Crew
+from mjrock.distinct import thread, time_integration
+from mjrock.distinct.thread_pool import ThreadPool
 from tests.digests.digest_answers import answers, elsewhere, moved, stored
 from tests.digests.digest_scenes import SCENES
 
@@ -62,10 +62,12 @@ def test_equal_to_the_bit_in_another_process_and_order_and_in_threads():
 def test_equal_to_the_bit_in_any_number_of_threads(monkeypatch):
     """Explicit steps by 1, 2 and 4 threads, which share the lines by four and the blocks one by one."""
     alone, runs = answers(BY_EXPLICIT_STEPS), []
-    monkeypatch.setattr(team, "LINES_TOGETHER", 4)
-    monkeypatch.setattr(team, "BODIES_TOGETHER", 1)
+    monkeypatch.setattr(thread, "LINES_TOGETHER", 4)
+    monkeypatch.setattr(thread, "BODIES_TOGETHER", 1)
     for count in (1, 2, 4):
-        monkeypatch.setattr(time_integration, "Crew", lambda given, count=count: runs.append(Crew(count)) or runs[-1])
+        monkeypatch.setattr(
+            time_integration, "ThreadPool", lambda given, count=count: runs.append(ThreadPool(count)) or runs[-1]
+        )
         for name in BY_EXPLICIT_STEPS:
             assert answers([name]) == {name: alone[name]}
             assert {run.used for run in runs} == {1 if name in RIGID else count}, name

@@ -8,7 +8,7 @@ from mjrock.distinct.rotation import take_inverse_inertia, update_rotation
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
-from mjrock.distinct.team import teams_of
+from mjrock.distinct.thread import threads_of
 from mjrock.geometry.frames import PLANE, SPACE
 from mjrock.problem.wall.rest_geometry import Solid, in_space
 from mjrock.scene.course import Ground
@@ -84,7 +84,7 @@ def stood(blocks):
 
 def alone(system):
     """The only thread of a run."""
-    return teams_of(system.bodies, system.lines, 1)[0][0]
+    return threads_of(system.bodies, system.lines, 1)[0][0]
 
 
 def books(system):

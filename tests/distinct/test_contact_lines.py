@@ -9,7 +9,7 @@ from by_hand import about, books, energy, matrix, system, velocity_at
 from mjrock.distinct.contacts import contact, friction, touches
 from mjrock.distinct.contacts.contact import Meeting
 from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK
-from mjrock.distinct.team import add_force
+from mjrock.distinct.thread import add_force
 
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}
 ALONG = {2: np.array([0.8, -0.6]), 3: np.array([-0.8, 0.0, 0.6])}

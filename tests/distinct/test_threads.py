@@ -14,10 +14,10 @@ import pytest
 
 import mjrock as mr
 from mjrock import machine
-from mjrock.distinct import crew, team
+from mjrock.distinct import thread, thread_pool
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.setup import setup_of
-from mjrock.distinct.team import LINES_TOGETHER, put_apart, spans_of, teams_of
+from mjrock.distinct.thread import LINES_TOGETHER, put_apart, spans_of, threads_of
 
 JOINTS = {"k_n": 1e9, "k_s": 4e8, "friction": 0.6, "xi": 0.05}
 MORTAR = mr.BONDS["cement mortar, wall J4D"]
@@ -93,30 +93,30 @@ def test_forces_wait_where_two_threads_press_on_a_body():
     assert apart["body"].tolist() == [-1, 2, 2]
     assert lines["apart"].tolist() == [0, 1, 0, 0, 0]
     assert lines["face_apart"].tolist() == [0, 0, 2, 0, 0]
-    teams, alone = teams_of(bodies, lines, 1)
+    threads, alone = threads_of(bodies, lines, 1)
     assert len(alone) == 1
     assert not lines["apart"].any()
-    assert teams[0].own_bodies == (0, 1)
+    assert threads[0].own_bodies == (0, 1)
 
 
 def test_each_body_and_line_has_one_thread():
     system = setup_of(wall(), None, None).system
-    teams, apart = teams_of(system.bodies, system.lines, 5)
-    for name, spans in (("own_lines", teams[0].lines), ("own_bodies", teams[0].bodies)):
-        parts = [getattr(team, name) for team in teams]
+    threads, apart = threads_of(system.bodies, system.lines, 5)
+    for name, spans in (("own_lines", threads[0].lines), ("own_bodies", threads[0].bodies)):
+        parts = [getattr(thread, name) for thread in threads]
         assert parts[0][0] == 0
         assert parts[-1][1] == len(spans) - 1
         assert all(one[1] == other[0] for one, other in itertools.pairwise(parts))
-    assert [teams[0].own_apart[0], teams[-1].own_apart[1]] == [1, len(apart)]
+    assert [threads[0].own_apart[0], threads[-1].own_apart[1]] == [1, len(apart)]
 
 
 def test_small_runs_rigid_friction_and_workers_take_one_thread(monkeypatch):
-    monkeypatch.setattr(crew, "cores", lambda: 4)
-    assert crew.all_threads() == 4
+    monkeypatch.setattr(thread_pool, "cores", lambda: 4)
+    assert thread_pool.all_threads() == 4
     monkeypatch.setenv("NUMBA_NUM_THREADS", "3")
-    assert crew.all_threads() == 3
-    monkeypatch.setattr(crew, "parent_process", lambda: object())
-    assert crew.all_threads() == 1
+    assert thread_pool.all_threads() == 3
+    monkeypatch.setattr(thread_pool, "parent_process", lambda: object())
+    assert thread_pool.all_threads() == 1
     assert mr.solve_explicit(wall(0.002, k_s=None), threads=2).stats["threads"] == 1
     assert mr.solve_explicit(wall(0.002)).stats["threads"] == 1
 
@@ -137,13 +137,13 @@ def test_a_run_goes_on_with_one_thread_where_no_more_can_be_started(monkeypatch)
 
 
 def test_the_faster_number_of_threads_makes_the_steps():
-    threads, clock = crew.Crew(None), crew.Clock(0, 1.0, 1, 0, 80, 100, np.inf, 0.0, (0.0, 0.0))
+    threads, clock = thread_pool.ThreadPool(None), thread_pool.Clock(0, 1.0, 1, 0, 80, 100, np.inf, 0.0, (0.0, 0.0))
     assert threads._choice((2, 1), clock) == (2, 80)
     threads._pace[2] = 3.0
     assert threads._choice((2, 1), clock) == (1, 80)
     threads._pace[1] = 2.0
-    taken = [threads._choice((2, 1), clock) for _ in range(crew.TRIED_AGAIN)]
-    assert taken.count((1, 80)) == crew.TRIED_AGAIN - 1
+    taken = [threads._choice((2, 1), clock) for _ in range(thread_pool.TRIED_AGAIN)]
+    assert taken.count((1, 80)) == thread_pool.TRIED_AGAIN - 1
     assert taken.count((2, 10)) == 1
 
 
@@ -213,8 +213,8 @@ def test_damped_motion_has_the_same_bits_in_any_number_of_threads():
 @pytest.mark.filterwarnings("ignore:ground motion peaks")
 def test_blocks_that_fall_have_the_same_bits_in_any_number_of_threads(monkeypatch):
     """Lines that are found have several spans, each with an account of its own."""
-    monkeypatch.setattr(team, "LINES_TOGETHER", 16)
-    monkeypatch.setattr(team, "BODIES_TOGETHER", 16)
+    monkeypatch.setattr(thread, "LINES_TOGETHER", 16)
+    monkeypatch.setattr(thread, "BODIES_TOGETHER", 16)
     pushed = mr.GroundMotion([40.0, 40.0, -40.0, -40.0], 0.3)
     answer = same(replace(wall(0.8, friction=0.2), motion=pushed), (2, 4), output_step=0.01)
     assert answer.fallen

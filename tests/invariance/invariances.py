@@ -18,7 +18,7 @@ from unittest.mock import patch
 import numpy as np
 
 import mjrock as mr
-from mjrock.distinct import team
+from mjrock.distinct import thread
 from mjrock.distinct.contacts.friction import SETTLED
 
 from .quantities import Scene, changed, moved, scaled, turned
@@ -175,7 +175,7 @@ def in_threads(trial: Trial) -> float | None:
     """Explicit steps by two and four threads, which share the lines by four and the blocks one by one."""
     if trial.scene["solver"] != "explicit":
         return None
-    with patch.multiple(team, LINES_TOGETHER=4, BODIES_TOGETHER=1):
+    with patch.multiple(thread, LINES_TOGETHER=4, BODIES_TOGETHER=1):
         return max(trial.differs(trial.again(threads=count)) for count in (2, 4))
 
 

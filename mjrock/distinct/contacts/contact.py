@@ -20,7 +20,7 @@ from ..rotation import apply_impulse_at, in_body, in_world, may_face_away, rotat
 from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
 from ..supports import Supports
 from ..system import Books, System
-from ..team import press_apart
+from ..thread import press_apart
 from .faces import is_beside, pulled_inside
 from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction, turned_along
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open

@@ -18,7 +18,7 @@ from ..rotation import rotation_change, rotations
 from ..rows import Row, Rows
 from ..supports import Supports, move_supports, moving, places, surges
 from ..system import Books, System
-from ..team import add_force
+from ..thread import add_force
 from .link import Kind, Named
 
 

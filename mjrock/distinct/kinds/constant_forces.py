@@ -9,7 +9,7 @@ from ...scene.scene import Scene
 from ..rotation import rotation_change
 from ..rows import Row, Rows
 from ..system import Books, System
-from ..team import add_force
+from ..thread import add_force
 from .link import Columns, Kind, Named, Table
 
 

@@ -24,7 +24,7 @@ from ...scene.scene import Scene
 from ..rotation import rotation_change
 from ..rows import Fields, Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
-from ..team import add_force
+from ..thread import add_force
 
 Named = tuple[tuple[str, ...], "Kind"]
 """The names of links, and the links."""

@@ -26,7 +26,7 @@ from ..contacts.friction import along_face, as_vector, carried, sheared, shorten
 from ..rotation import in_body
 from ..rows import Fields, Row, Rows, numbers
 from ..system import Books, System
-from ..team import press_apart
+from ..thread import press_apart
 from .law import JointLaw
 from .link import Table
 

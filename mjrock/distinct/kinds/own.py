@@ -39,7 +39,7 @@ from ..contacts.contact import meeting, relative, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sprung_friction
 from ..rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
 from ..system import Books, System
-from ..team import press_apart
+from ..thread import press_apart
 from .law import JointLaw
 from .link import Table
 

@@ -21,7 +21,7 @@ from ..machine import cores
 from .loop import Clock
 from .rows import Rows
 from .system import Books, Samples, System
-from .team import Team
+from .thread import Thread
 
 WORTH_THREADS = 2000
 """Lines from which on all cores take part where nothing else is given, see docs/cost.md."""
@@ -30,7 +30,7 @@ TRIED_AGAIN = 20
 SHORT_TRY = 8
 """How many times fewer steps such a call makes."""
 
-Steps = Callable[[System, Books, Samples, Clock, Team], tuple[int, int, bool]]
+Steps = Callable[[System, Books, Samples, Clock, Thread], tuple[int, int, bool]]
 """The compiled steps."""
 
 
@@ -42,7 +42,7 @@ def all_threads() -> int:
     return 1 if parent_process() is not None else most
 
 
-class Crew:
+class ThreadPool:
     """Threads that make the steps.
 
     Args:
@@ -57,7 +57,7 @@ class Crew:
         self._pool: ThreadPoolExecutor | None = None
         self._pace: dict[int, float] = {}
         self._calls = 0
-        self._shared: tuple[Rows, Books, tuple[Team, ...]] | None = None
+        self._shared: tuple[Rows, Books, tuple[Thread, ...]] | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -67,7 +67,7 @@ class Crew:
             self._pool.shutdown()
 
     @property
-    def team(self) -> Team:
+    def thread(self) -> Thread:
         """The thread that has made the last steps, or the first of them."""
         assert self._shared is not None
         return self._shared[2][0]
@@ -114,7 +114,7 @@ class Crew:
                 self._most = 1
         return self._most > 1
 
-    def _shared_by(self, count: int, system: System, books: Books) -> tuple[Books, tuple[Team, ...]]:
+    def _shared_by(self, count: int, system: System, books: Books) -> tuple[Books, tuple[Thread, ...]]:
         """The books of some threads and these, made anew where lines have come or gone."""
         if self._shared is None or len(self._shared[2]) != count or self._shared[0] is not system.lines:
             self._shared = system.lines, *books.of_threads(system, count)
@@ -126,10 +126,10 @@ class Crew:
         """The same steps by some threads. All of them start, or none: they wait for each other."""
         assert self._pool is not None
         self.used = max(self.used, count)
-        shared, teams = self._shared_by(count, system, books)
+        shared, threads = self._shared_by(count, system, books)
         with interrupts_held_back():
             running: list[Future[tuple[tuple[int, int, bool], float]]] = [
-                self._pool.submit(_timed, steps, system, shared, samples, clock, team) for team in teams
+                self._pool.submit(_timed, steps, system, shared, samples, clock, thread) for thread in threads
             ]
         found = [one.result() for one in running]
         self.processor += sum(spent for _, spent in found)
@@ -137,8 +137,8 @@ class Crew:
 
 
 def _timed(
-    steps: Steps, system: System, books: Books, samples: Samples, clock: Clock, team: Team
+    steps: Steps, system: System, books: Books, samples: Samples, clock: Clock, thread: Thread
 ) -> tuple[tuple[int, int, bool], float]:
     """The steps of one thread, and the processor time that they took [s]."""
     begun = time.thread_time()
-    return steps(system, books, samples, clock, team), time.thread_time() - begun
+    return steps(system, books, samples, clock, thread), time.thread_time() - begun

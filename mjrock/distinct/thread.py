@@ -31,7 +31,7 @@ LOOKS_AT_GATE = 2000
 """How often a thread looks whether all have arrived before it lets others have its core."""
 
 
-class Team(NamedTuple):
+class Thread(NamedTuple):
     """A thread among those of a run.
 
     Args:
@@ -58,7 +58,7 @@ class Team(NamedTuple):
     pause: int
 
 
-def teams_of(bodies: Rows, lines: Rows, count: int) -> tuple[tuple[Team, ...], Rows]:
+def threads_of(bodies: Rows, lines: Rows, count: int) -> tuple[tuple[Thread, ...], Rows]:
     """A number of threads for these bodies and lines, and room for the forces that wait, see `put_apart`."""
     spans, of_bodies = spans_of(lines), np.append(np.arange(0, len(bodies), BODIES_TOGETHER), len(bodies))
     parts, parts_of_bodies = (np.arange(count + 1) * (len(each) - 1) // count for each in (spans, of_bodies))
@@ -69,8 +69,10 @@ def teams_of(bodies: Rows, lines: Rows, count: int) -> tuple[tuple[Team, ...], R
     own_lines, own_bodies, own_apart = (
         [(int(each[i]), int(each[i + 1])) for i in range(count)] for each in (parts, parts_of_bodies, first)
     )
-    teams = [Team(i, count, spans, of_bodies, own_lines[i], own_bodies[i], own_apart[i], *shared) for i in range(count)]
-    return tuple(teams), apart
+    threads = [
+        Thread(i, count, spans, of_bodies, own_lines[i], own_bodies[i], own_apart[i], *shared) for i in range(count)
+    ]
+    return tuple(threads), apart
 
 
 def spans_of(lines: Rows) -> Integers:
@@ -145,10 +147,10 @@ def press_apart(apart: Rows, bodies: Rows, line: Row, arms: tuple[Vector, Vector
 
 
 @inlined
-def bring_together(team: Team, apart: Rows, bodies: Rows) -> None:
+def bring_together(thread: Thread, apart: Rows, bodies: Rows) -> None:
     """Add the forces that wait to those of their bodies, when all threads have pressed."""
-    wait(team)
-    for i in range(team.own_apart[0], team.own_apart[1]):
+    wait(thread)
+    for i in range(thread.own_apart[0], thread.own_apart[1]):
         row = apart[i]
         body, force, turning = bodies[row.body], read(row.force), read(row.moment)
         increase(body.force, force)
@@ -175,10 +177,10 @@ add, look, rest = (by_type(_atomic(name)) for name in ("add", "look", "rest"))  
 
 
 @inlined
-def wait(team: Team) -> None:
+def wait(thread: Thread) -> None:
     """Wait until all threads are here. What each has written, all can read then."""
-    if team.threads > 1:
-        meet_others(team.gate, team.threads, team.pause)
+    if thread.threads > 1:
+        meet_others(thread.gate, thread.threads, thread.pause)
 
 
 @called
@@ -197,12 +199,12 @@ def meet_others(gate: Integers, threads: int, pause: int) -> None:
 
 
 @inlined
-def end_all(team: Team) -> None:
+def end_all(thread: Thread) -> None:
     """End the run for all threads, which see it when they have waited."""
-    team.gate[GATE_END] = 1
+    thread.gate[GATE_END] = 1
 
 
 @inlined
-def has_ended(team: Team) -> bool:
+def has_ended(thread: Thread) -> bool:
     """Whether the run has ended."""
-    return bool(team.gate[GATE_END] == 1)
+    return bool(thread.gate[GATE_END] == 1)
