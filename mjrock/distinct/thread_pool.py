@@ -23,7 +23,7 @@ from .rows import Rows
 from .system import Books, Samples, System
 from .thread import Thread
 
-WORTH_THREADS = 2000
+WORTH_THREADS = 1000
 """Lines from which on all cores take part where nothing else is given, see docs/cost.md."""
 TRIED_AGAIN = 20
 """Calls from one with the slower number of threads to the next, which finds out whether it still is slower."""

@@ -37,6 +37,7 @@ WRITES = {
     "table2": {"table2.png", "table2.csv"},
     "layouts": {"layouts.txt"},
     "friction": {"friction.txt"},
+    "mass_scaling": {"mass_scaling.txt"},
     "hard_cases": {"hard_cases.md"},
     "trouble": {"trouble.txt"},
     "law_range": {"law_range.txt"},
