@@ -1,7 +1,7 @@
 """Numbers of few bits, fractions and decimals: the answer of the float of the same value, or a refusal by name.
 
-NumPy computes with its small numbers in their own bits: np.uint8(100) * 4 is 144. Each argument of each public entry is
-given as such a number, and what comes back has to be bitwise what the float gives.
+NumPy computes with its small numbers in their own bits: np.uint8(100) * 4 is 144. The arguments of each public entry
+are given as such numbers, all of one kind at once, and what comes back has to be bitwise what the floats give.
 """
 
 import dataclasses
@@ -71,14 +71,16 @@ def refused(name, argument, values):
 def test_a_narrow_number_counts_as_the_float_of_its_value(name):
     floats, offenders = {key: float(value) for key, value in ENTRIES[name].numbers.items()}, []
     answer = pieces(called(name, floats))
-    for argument, number in floats.items():
-        values = [value for kind in NARROW if (value := as_narrow(number, kind)) is not None]
-        assert len(values) >= 3, argument
-        offenders += not_refused(refused(name, argument, [one for one in values if isinstance(one, Decimal)]))
-        with np.errstate(over="raise", invalid="raise"):
-            for value in values:
-                same = isinstance(value, Decimal) or pieces(called(name, floats | {argument: value})) == answer
-                offenders += [] if same else [f"{argument} = {value!r} gives another answer"]
+    narrow = {kind: {key: as_narrow(value, kind) for key, value in floats.items()} for kind in NARROW}
+    for argument in floats:
+        assert sum(values[argument] is not None for values in narrow.values()) >= 3, argument
+    decimals = narrow.pop(Decimal)
+    offenders += not_refused(one for each in decimals for one in refused(name, each, [decimals[each]]))
+    with np.errstate(over="raise", invalid="raise"):
+        for kind, values in narrow.items():
+            held = {argument: value for argument, value in values.items() if value is not None}
+            same = pieces(called(name, floats | held)) == answer
+            offenders += [] if same else [f"{', '.join(held)} as {kind.__name__} give another answer"]
     assert offenders == []
 
 
