@@ -336,6 +336,9 @@ LONG = {
     "stacks_grippers_feet",
     "rocking_by_the_guide",
     "make_models",
+    "own_laws",
+    "result_files",
+    "maxima",
 }
 """Scripts that take a while even with --quick."""
 
