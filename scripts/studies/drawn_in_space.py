@@ -22,6 +22,7 @@ os.environ.setdefault("MUJOCO_GL", "egl")
 import mujoco
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 import mjrock as mr
@@ -138,8 +139,8 @@ def rendered(view: View) -> Callable[[int], Array]:
 def filmed(view: View) -> Callable[[int], Array]:
     """What draws a frame as `plotting.animate` does."""
     figure, update = animation.scene(view.solids, [], None)
-    for text in figure.findobj(Text):
-        text.set_visible(False)
+    for part in (*figure.findobj(Text), *figure.findobj(Line2D)):
+        part.set_visible(False)
     stage = animation.Stage(figure, 100.0)
 
     def draw(frame: int) -> Array:
