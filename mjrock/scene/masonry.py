@@ -30,7 +30,7 @@ SETTLEMENT_OF_STIFF = 1e-5
 """Deformation of joints that count as stiff, at each line under the weight of all blocks [m]."""
 BED = 0.5
 """Vertical part of the normal of a joint that counts as level [-]."""
-MEMORY_OF_BLOCK, MEMORY_OF_LINE = {False: 20e3, True: 70e3}, {False: 4e3, True: 6e3}
+MEMORY_OF_BLOCK, MEMORY_OF_LINE = {False: 30e3, True: 70e3}, {False: 4e3, True: 6e3}
 """Memory of set-up for each block and for each of its contact lines, in the plane and in space [bytes]. The factors of
 the stiffness in the search for the pose of rest take the most. `scripts/measure/setup_cost.py` measures it."""
 SHARE_OF_FARTHEST = 0.1
