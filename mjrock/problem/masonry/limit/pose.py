@@ -96,7 +96,7 @@ class Moves(NamedTuple):
 
     def part(self, number: int, part: Polygon | Polyhedron) -> Polygon | Polyhedron:
         """A convex part of a block where it has moved. A body in space keeps its faces, which turn with it: to find
-        them anew takes a third of a limit analysis."""
+        them anew takes a fifth of a limit curve."""
         corners = np.array(part.vertices)
         places = self.at([number] * len(corners), corners)
         if isinstance(part, Polygon):
