@@ -238,7 +238,7 @@ class Bodies:
 
     @property
     def extent_seen(self) -> Array:
-        """Width and height of what the picture has to hold [m], shape (2,)."""
+        """Width and height of the drawing [m], shape (2,)."""
         return np.asarray(np.ptp(self.extent(), axis=0))
 
     @cached_property

@@ -216,7 +216,7 @@ class Solids:
 
     @property
     def extent_seen(self) -> Array:
-        """Width and height of what the picture has to hold [m], shape (2,)."""
+        """Width and height of the drawing [m], shape (2,)."""
         return np.asarray(np.ptp(self.seen, axis=0))
 
     @property

@@ -72,9 +72,9 @@ def test_what_is_driven_is_fixed_and_named(tmp_path):
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("DOF.INI", "no DOF.INI lies beside it, which says how each body is turned; all are taken as not turned"),
-        ("DRV_DOF.DAT", "no DRV_DOF.DAT lies beside it, which says which bodies are held; fixed= takes its place"),
-        ("BULK_BEHAV.DAT", "no BULK_BEHAV.DAT lies beside it, which says the density of each material; density= takes"),
+        ("DOF.INI", "no DOF.INI lies beside it, which states how each body is turned; all are taken as not turned"),
+        ("DRV_DOF.DAT", "no DRV_DOF.DAT lies beside it, which states which bodies are held; fixed= takes its place"),
+        ("BULK_BEHAV.DAT", "no BULK_BEHAV.DAT lies beside it, which states the density of each material; density="),
     ],
 )
 def test_a_file_that_is_missing_is_named(tmp_path, name, said):

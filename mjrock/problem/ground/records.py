@@ -392,7 +392,7 @@ class RecordTable:
         """The name of a column without what stands there in brackets."""
         return re.split(r"[(\[]", self.name(number_of))[0].strip()
 
-    def says(self, line: int = 0) -> str:
+    def row_text(self, line: int = 0) -> str:
         """A row, by the number of its line and its words."""
         return f"line {self.places[line]} is {' '.join(f'{x:g}' for x in self.values[line])}"
 
@@ -679,7 +679,7 @@ def _without_header(
     if doubted:
         where, given = found.places[0], "" if dt is None else f" (dt = {dt:g} s was given)"
         raise ValueError(
-            f"{' and '.join(found.says(i) for i in range(doubted))}{given}: of the header, or the first row? "
+            f"{' and '.join(found.row_text(i) for i in range(doubted))}{given}: of the header, or the first row? "
             f"skip={found.places[doubted] - 1} reads what follows, skip={where - 1} takes it as a row"
         )
     return found, stated

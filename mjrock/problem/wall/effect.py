@@ -231,7 +231,7 @@ class Effect:
 
     @property
     def outline(self) -> Array:
-        """Corners of what it is in the section, x from the middle of the base and z [m], shape (n, 2); (0, 2) of what
+        """Corners of its outline in the section, x from the middle of the base and z [m], shape (n, 2); (0, 2) of what
         is at a point."""
         return np.empty((0, 2))
 

@@ -81,7 +81,7 @@ class AppliedLink(AppliedLaw):
 
     at: ClassVar[str] = "an elongation"
     whose: ClassVar[str] = "the law has"
-    says: ClassVar[tuple[str, str, str]] = ("force", "energy", "force")
+    answers: ClassVar[tuple[str, str, str]] = ("force", "energy", "force")
     shortest: ClassVar[float] = 1e-4
     pulls: ClassVar[bool] = True
 

@@ -168,7 +168,7 @@ def moment_at_strength(pulls: Sequence[TiePull]) -> float:
 
 
 def tie_limits(pulls: Mapping[str, TiePull], rotations: Array) -> tuple[dict[str, float], dict[str, float]]:
-    """Rotations [rad] at which ties yield, and at which they break, of those that do at increasing rotations (n,)."""
+    """Rotations [rad] at which ties yield, and at which they break, under increasing rotation, shape (n,) each."""
     yielding: dict[str, float] = {}
     breaking: dict[str, float] = {}
     for name, pull in pulls.items():

@@ -158,14 +158,14 @@ class AppliedLaw:
         law: the law.
         at: what its length is, in messages.
         whose: what has its numbers, in messages.
-        says: names of what it answers, in messages.
+        answers: names of the numbers that it returns, in messages.
         shortest: length from which on a slope is taken over a part of it [m].
     """
 
     law: UserLaw
     at: ClassVar[str] = "a closing"
     whose: ClassVar[str] = "the law and its lines have"
-    says: ClassVar[tuple[str, str, str]] = ("stress", "energy", "damping")
+    answers: ClassVar[tuple[str, str, str]] = ("stress", "energy", "damping")
     shortest: ClassVar[float] = 1e-12
 
     @property
@@ -213,7 +213,7 @@ class AppliedLaw:
         except Exception as error:
             raise ValueError(f"{self.name} fails at {self.at} of {u:g} m: {error!r}") from None
         found = Answer(float(row.stress_), float(row.energy_), float(row.damping_))
-        for name, value in zip(self.says, found, strict=True):
+        for name, value in zip(self.answers, found, strict=True):
             if not math.isfinite(value):
                 raise ValueError(f"{self.name}.{name} is {value} at {self.at} of {u:g} m; a finite number is needed")
         return found

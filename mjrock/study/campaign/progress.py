@@ -121,7 +121,7 @@ class CampaignProgress:
         self.started = self.spoken = time.monotonic()
         self.first: tuple[int, float] | None = None
         if kept:
-            self._say(f"{kept} rows in {store} are kept")
+            self._print(f"{kept} rows in {store} are kept")
         form = (PLAIN if total is None else OF_ALL).replace("<{remaining}", "")  # which counts the start of workers
         self.bar = shown_bar("campaign", "cases", total, delay=1, bar_format=form)
 
@@ -149,7 +149,7 @@ class CampaignProgress:
         elif now - self.spoken >= LINE_EVERY:
             self.spoken = now
             of = "" if self.total is None else f" of {self.total}"
-            self._say(", ".join([f"{self.skipped + finished}{of} cases", *parts]))
+            self._print(", ".join([f"{self.skipped + finished}{of} cases", *parts]))
 
     def _rate(self, finished: int, now: float) -> float:
         """Cases in a second since the first that ended, as workers start for some time; 0 for fewer than FEWEST."""
@@ -161,11 +161,11 @@ class CampaignProgress:
         """Print the warnings by their kinds, and the last line of the campaign."""
         self.bar.close()
         for line in self.warned.lines():
-            self._say(line)
+            self._print(line)
         seconds = time.monotonic() - self.started
-        self._say(closing(self.skipped, self.statuses, self.outcomes, seconds, self.total))
+        self._print(closing(self.skipped, self.statuses, self.outcomes, seconds, self.total))
 
-    def _say(self, text: str) -> None:
+    def _print(self, text: str) -> None:
         notice(text, by="campaign")
 
     def __enter__(self) -> CampaignProgress:

@@ -173,7 +173,7 @@ class Store:
             f"Store.rescue({str(self.path)!r}, new_path) copies them into a new store that a campaign can carry on from"
         )
 
-    def _ask(self, query: str) -> tuple[list[str], list[tuple[Any, ...]]]:
+    def _query(self, query: str) -> tuple[list[str], list[tuple[Any, ...]]]:
         """The names of the columns of a query, and its rows."""
         try:
             cursor = self._rows.execute(query)
@@ -201,7 +201,7 @@ class Store:
     @property
     def columns(self) -> list[str]:
         """The names of the columns."""
-        return [row[1] for row in self._ask("PRAGMA table_info(cases)")[1] if row[1] != CHECKSUM]
+        return [row[1] for row in self._query("PRAGMA table_info(cases)")[1] if row[1] != CHECKSUM]
 
     def add_columns(self, names: Iterable[str]) -> None:
         """Make columns for these names where there are none yet.
@@ -270,11 +270,11 @@ class Store:
 
     def __len__(self) -> int:
         """How many rows there are."""
-        return int(self._ask("SELECT count(*) FROM cases")[1][0][0])
+        return int(self._query("SELECT count(*) FROM cases")[1][0][0])
 
     def _verified(self) -> Iterator[Row]:
         """The rows in the order of their tasks, each verified by its checksum."""
-        names, rows = self._ask("SELECT * FROM cases ORDER BY position, key")
+        names, rows = self._query("SELECT * FROM cases ORDER BY position, key")
         for values in rows:
             row = dict(zip(names, values, strict=True))
             if row.pop(CHECKSUM) != checksum(row):

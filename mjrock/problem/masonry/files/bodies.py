@@ -385,7 +385,7 @@ def blocks_of(meshes: Sequence[Mesh], given: FileOptions) -> list[SolidBlock]:
     bounds = [Bound.from_mesh(_support(body, middle)) for body in bodies]
     dented = sorted((bound for bound in bounds if not bound.is_convex), key=lambda bound: -bound.added)
     if dented and convex != "parts":
-        _say_dented(dented, bounds, convex)
+        _warn_of_dents(dented, bounds, convex)
     cut = {bound.body.name for bound in dented} if convex == "parts" else set()
     return [_cut(bound, density) if bound.body.name in cut else _whole(bound, density) for bound in bounds]
 
@@ -404,7 +404,7 @@ def _support(body: Mesh, middle: Array) -> Mesh:
     return body._replace(vertices=np.concatenate([body.vertices, behind])[list(hull.corners)], faces=list(hull.faces))
 
 
-def _say_dented(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | None) -> None:
+def _warn_of_dents(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | None) -> None:
     """Warn of the volume that the hulls of bodies which are not convex add, or refuse these."""
     most, total = dented[0], sum(bound.enclosed for bound in bounds)
     whole = sum(bound.of_hull - bound.enclosed for bound in dented) / total

@@ -153,12 +153,12 @@ def _sound(call: Callable[P, Result], *given: P.args, **options: P.kwargs) -> Re
 
 
 def _is_polyline(entity: DXFEntity) -> TypeGuard[LWPolyline | Polyline]:
-    """Whether a thing of a drawing is a polyline, which may be the outline of a block."""
+    """Whether an entity of a drawing is a polyline, which may be the outline of a block."""
     return entity.dxftype() in ("LWPOLYLINE", "POLYLINE")
 
 
 def _is_insert(entity: DXFEntity) -> TypeGuard[Insert]:
-    """Whether a thing of a drawing is an inserted block."""
+    """Whether an entity of a drawing is an inserted block."""
     return entity.dxftype() == "INSERT"
 
 

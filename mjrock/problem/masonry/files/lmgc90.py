@@ -78,20 +78,20 @@ def read_lmgc90(path: AnyPath) -> list[Mesh]:
 
 
 def _beside(bodies: Path, name: str) -> str:
-    """The text of another file of the folder, empty where it is not there, which a warning says."""
+    """The text of another file of the folder, empty with a warning where it is missing."""
     path = bodies.parent / name
     if not path.is_file():
-        warn_of(f"path = {bodies}: no {name} lies beside it, which says {SAYS[name]}")
+        warn_of(f"path = {bodies}: no {name} lies beside it, which states {CONTENT[name]}")
         return ""
     return file_text(path)
 
 
-SAYS = {
+CONTENT = {
     "BULK_BEHAV.DAT": "the density of each material; density= takes its place",
     "DOF.INI": "how each body is turned; all are taken as not turned",
     "DRV_DOF.DAT": "which bodies are held; fixed= takes its place",
 }
-"""What each file beside BODIES.DAT says, and what happens without it."""
+"""What each file beside BODIES.DAT contains, and what happens without it."""
 
 
 def _value(text: str) -> float:
