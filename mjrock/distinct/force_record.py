@@ -1,6 +1,6 @@
 """Forces that are kept at a sample: of joints, of fixed blocks and of what actuators drive.
 
-A row keeps the force along its normal and that of its friction in the last step. They are gathered when all forces of
+A row keeps the force along its normal and that of its friction in the last step. They are recorded when all forces of
 the step have acted, those of rigid friction and of touches too.
 """
 

@@ -293,8 +293,7 @@ def has_links(samples: Samples) -> bool:
 def settle_step(
     system: System, books: Books, samples: Samples, clock: Clock, step: Step, sticking: int, touched: int
 ) -> None:
-    """What is left when all forces have acted but rigid friction, by one thread for all: this friction, touches and
-    links, and what is kept."""
+    """Finish a step, by one thread for all: rigid friction, touches and links, and the records of a sample."""
     energy, kick = samples.energy[step.kept], step.kick
     stick(system, books.active, sticking, kick)
     taken, put_in = settle_touches(system, books, touched, kick)

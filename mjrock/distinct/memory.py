@@ -1,4 +1,4 @@
-"""Memory: what the steps know at the end of a run beside pose and velocity, so that another run carries on to rounding.
+"""Memory: the state of the steps at the end of a run, beside pose and velocity. With it a run goes on to rounding.
 
 Velocities stand half a step before the pose, friction holds what it held in the last step, and the work of dashpots and
 friction is that of the mean of two steps.
@@ -24,16 +24,16 @@ class Memory(NamedTuple):
     """The steps before the last pose of a run.
 
     Args:
-        of: what stands, see `Setup`. Another structure remembers nothing.
+        structure: to which it belongs, see `Setup`.
         system: with the velocities half a step before the pose.
         before: length of the step that led to the pose [s].
         pushed: mean acceleration of the ground over the half of that step before the pose [m/s2].
         moved: displacement of each fixed block that moves in that step, by name, shape (d,) each [m].
-        search: what was known of the contact search.
+        search: the state of the contact search.
         until_search: steps until its next update.
     """
 
-    of: object
+    structure: object
     system: System
     before: float
     pushed: Vector
@@ -42,10 +42,10 @@ class Memory(NamedTuple):
     until_search: int = 0
 
 
-def memory_of(start: object, of: object) -> Memory | None:
-    """The memory of a start, if it has one of what stands here."""
+def memory_of(start: object, structure: object) -> Memory | None:
+    """The memory of a start, if the start carries one of the same structure."""
     memory = start.memory if isinstance(start, End) else None
-    return memory if isinstance(memory, Memory) and memory.of == of else None
+    return memory if isinstance(memory, Memory) and memory.structure == structure else None
 
 
 def require_nothing_forgotten(start: object) -> None:
@@ -54,7 +54,7 @@ def require_nothing_forgotten(start: object) -> None:
     memory = start.memory if isinstance(start, End) else None
     if not isinstance(memory, Memory):
         return
-    masonry: Any = memory.of[0] if isinstance(memory.of, tuple) else None
+    masonry: Any = memory.structure[0] if isinstance(memory.structure, tuple) else None
     bonds = getattr(masonry, "bonds", ())  # a wall has none
     joints = {
         masonry.joints[int(memory.system.lines["group"][i])].name: None
@@ -70,11 +70,11 @@ def require_nothing_forgotten(start: object) -> None:
         )
 
 
-def remember(of: object, system: System, clock: Clock, blocks: tuple[str, ...]) -> Memory:
-    """What the steps know before the last of them, but for the contact search.
+def remember(structure: object, system: System, clock: Clock, blocks: tuple[str, ...]) -> Memory:
+    """The memory of the steps before the last of them, without the contact search.
 
     Args:
-        of: what stands.
+        structure: see `Memory`.
         system: before the last step.
         clock: at the last step.
         blocks: names of the fixed blocks that move.
@@ -83,7 +83,7 @@ def remember(of: object, system: System, clock: Clock, blocks: tuple[str, ...]) 
     pushed = accelerated(system.ground, t - 0.25 * h, 0.5 * h, system.axes)
     moved, kept = dict(zip(blocks, places(supports, t) - supports.moved, strict=True)), copied(system)
     kept = kept._replace(links=tuple(table.remembered(t) for table in kept.links))
-    return Memory(of, kept, h, pushed, moved)
+    return Memory(structure, kept, h, pushed, moved)
 
 
 def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:

@@ -35,8 +35,7 @@ POSITION_ROUNDING = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run by explicit steps: what stood, what was kept of the motion, and when [s], and the times of the checks
-    [s]."""
+    """A run by explicit steps: its start and end, accounts and samples, and the times of samples and checks [s]."""
 
     setup: Setup
     integration: Integration
@@ -52,7 +51,7 @@ class Run:
 
     @property
     def scene(self) -> Scene:
-        """What stood."""
+        """The structure."""
         return self.setup.scene
 
     @property

@@ -1,6 +1,6 @@
 """Rows: bodies, contact lines and edges of faces, each with its numbers by name, for compiled functions.
 
-What belongs together stands together in memory, which is what a step of some thousand lines takes its time for.
+Numbers that are used together are stored together: a step of some thousand lines spends most of its time on memory.
 Vectors have d = 2 numbers in the plane and 3 in space. Spins, moments and vectors along a face have s = 1 and 3.
 Positions are those at rest, and the motion is counted from there. The axes of a body are those of the world at rest.
 """

@@ -1,4 +1,4 @@
-"""What is followed by explicit steps: a wall or masonry at the start of a case."""
+"""The start of explicit steps: the system of a wall or of masonry, and the length of its steps."""
 
 from __future__ import annotations
 
@@ -29,15 +29,16 @@ from .system import System
 
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """A system at its start, and how it is followed.
+    """A system at its start, with all that its time integration needs.
 
     Args:
         problem: the case with its contacts.
-        scene, course, system: what stands, what happens to it, and its rows.
+        scene, course, system: the structure, what happens to it, and its rows.
         step_length: of its steps.
         ends: rotation at which the run ends [rad].
-        search: where blocks that fall meet others, or None where that is not followed.
-        of: what stands: masonry with its effects, or the key of the scene of a wall and its contacts.
+        search: the contact search for blocks that fall; a wall has none.
+        structure: masonry with its effects, or the key of the scene of a wall and its contacts. A run can be continued
+            by one of the same structure.
         blocks: the fixed blocks that move, in the order of the supports.
         names: of the links of each kind.
         drag, local: mass-proportional [1/s] and local damping [-] of the motion.
@@ -51,7 +52,7 @@ class Setup:
     step_length: StepLength
     ends: float = math.inf
     search: ContactSearch | None = None
-    of: object = None
+    structure: object = None
     blocks: tuple[str, ...] = ()
     memory: Memory | None = None
     names: tuple[tuple[str, ...], ...] = ()
@@ -90,7 +91,7 @@ def setup_of_problem(problem: Problem, contacts: Contacts | None, state: State |
     course = course if state is None else course.continued(*state)
     if isinstance(case, MasonryCase):
         return setup_of_masonry(problem, case, scene, course)
-    return replace(setup_of_wall(problem, case, scene, course), of=(scene.key, contacts))
+    return replace(setup_of_wall(problem, case, scene, course), structure=(scene.key, contacts))
 
 
 def continued(setup: Setup, start: object) -> Setup:
@@ -100,7 +101,7 @@ def continued(setup: Setup, start: object) -> Setup:
         ValueError: for ties that yield, whose elongation another start does not contain, and for an end of another
             structure whose joint laws have a memory.
     """
-    memory = memory_of(start, setup.of)
+    memory = memory_of(start, setup.structure)
     if memory is None:
         if start is not None:
             require_known_ties(setup.problem.case)
@@ -141,14 +142,14 @@ def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: 
         at_pose(system, course.pose, course.velocity),
         length,
         search=search.begun(blocks),
-        of=(case.masonry, case.passive),
+        structure=(case.masonry, case.passive),
         blocks=blocks,
         names=names,
     )
 
 
 class AtRest(NamedTuple):
-    """What cases with the same scene share.
+    """The part of a set-up that cases with the same scene share.
 
     Args:
         system: of masonry at rest, or as drawn where it is not settled, with the laws of its joints, without links.
@@ -163,7 +164,7 @@ class AtRest(NamedTuple):
 
 @lru_cache(maxsize=16)
 def masonry_at_rest(scene: Scene) -> AtRest:
-    """Masonry before anything happens to it."""
+    """Masonry at rest, or as drawn where it is not settled, computed once for each scene."""
     system = system_of(scene, ended=True)
     if scene.settled is None:
         pose, drag = scene.found

@@ -1,4 +1,4 @@
-"""The system: all that stands and acts in the plane or in space, its motion, and what is kept and booked of it."""
+"""The system of bodies, lines, links and laws in the plane or in space, its samples and its energy accounts."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ and what actuators have put in, and what `rows.TAKEN_BY_LAWS` names."""
 
 
 class System(NamedTuple):
-    """All that stands and acts, and its motion. `ways` is room for d - 1 rows of each line that sticks rigidly. `laws`
-    has a table for each law of joints beside the dry one, `links` one for each kind of links, and `guided` the body of
-    each actuator."""
+    """Bodies with their motion, contact lines, and all that acts on them. `ways` has room for d - 1 rows of each line
+    that sticks rigidly. `laws` has a table for each law of joints beside the dry one, `links` one for each kind of
+    links, and `guided` the body of each actuator."""
 
     axes: tuple[int, ...]
     bodies: Rows
@@ -47,7 +47,7 @@ class System(NamedTuple):
 
 
 class Books(NamedTuple):
-    """Work since the start [J], and what the lines of a step leave.
+    """Energy accounts: work since the start [J], with the room that lines need in a step.
 
     Args:
         dashpots: by group, shape (g,).
@@ -108,7 +108,7 @@ class Books(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """What is kept of a motion at its samples.
+    """The motion, the energy and the forces at the samples of a run.
 
     Args:
         pose, velocity: of the bodies, shapes (samples, n, nq) and (samples, n, nv).

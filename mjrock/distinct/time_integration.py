@@ -72,7 +72,7 @@ def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, thre
     with Bar("explicit steps", "s", grid.end) as bar, ThreadPool(threads) as pool:
         while clock.step < stop and not ended:
             if clock.step == grid.last:
-                memory = remember(setup.of, system, clock, setup.blocks)
+                memory = remember(setup.structure, system, clock, setup.blocks)
                 if search is not None:
                     memory = memory._replace(search=deepcopy(search.state), until_search=next_search - clock.step)
             if search is not None and clock.step == next_search:

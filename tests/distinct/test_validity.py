@@ -268,7 +268,7 @@ def valid_times(found, motion, sizes, outdated=(0, 1, 2), valid_for=9.0):
     """For how long the contacts of blocks are valid, and which may touch by then."""
     count = len(sizes)
     valid_for, may_touch = np.full(count, valid_for), np.zeros(len(found.gap), dtype=bool)
-    searched = Validity.nothing(motion.poses, INTERVAL)._replace(
+    searched = Validity.initial(motion.poses, INTERVAL)._replace(
         valid_for=valid_for, outdated=np.isin(np.arange(count), outdated)
     )
     validity.set_validity(found, motion, sizes, searched, may_touch, INTERVAL)

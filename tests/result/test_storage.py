@@ -487,7 +487,7 @@ class TestRefused:
 
         found = answer("mortar")
         found.save(path)
-        fewer = memory.NamedTuple("Memory", [("of", object)])
+        fewer = memory.NamedTuple("Memory", [("structure", object)])
         monkeypatch.setattr(memory, "Memory", fewer)
         with pytest.warns(UserWarning, match=r"end\.memory is of the class .* goes? on from its end"):
             read = mr.load(path)

@@ -41,7 +41,7 @@ class Actuators(Kind, Histories):
     booked = ("actuators", "dashpots")
 
     @classmethod
-    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+    def from_scene(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a case of masonry, which count displacements from the pose of rest."""
         d = bodies["rest"].shape[1]
         if not case.actuators:

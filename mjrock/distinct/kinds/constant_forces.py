@@ -19,7 +19,7 @@ class ConstantForces(Kind, Table):
     reported = False
 
     @classmethod
-    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+    def from_scene(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
         forces, count = scene.forces, len(scene.forces.body)
         columns: Columns = {"body": forces.body, "at": forces.at, "between": forces.force} if count else {}

@@ -21,7 +21,7 @@ class Dampers(Kind, Table):
     booked = ("dashpots",)
 
     @classmethod
-    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+    def from_scene(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
         return cls.linking(scene.links.damped, scene.dampers.links.between, rate=0.0, lead=0.0)
 

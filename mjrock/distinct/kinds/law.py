@@ -1,8 +1,8 @@
 """What all laws of joints beside the dry one have: a row for each contact line, and what a run requires of a law.
 
-A contact line is dry: it has pressure and friction. A law adds forces to its lines, and takes over as much of their
-springs, dashpots and friction as it has itself. It is a class in a file of this folder. `LAWS` of `lists` names the
-laws, and nothing else knows which there are.
+A contact line is dry: it has pressure and friction. A law adds forces to its lines, and takes over
+those springs, dashpots and friction of theirs that it replaces. It is a class in a file of this folder. `LAWS` of
+`lists` names the laws, and nothing else knows which there are.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ class JointLaw:
         return rows(np.dtype(fields), count)
 
     @classmethod
-    def of(cls, scene: Scene, lines: Rows) -> Self:
-        """The law of the joints of a scene that have it. It takes over what it holds of their lines."""
+    def from_scene(cls, scene: Scene, lines: Rows) -> Self:
+        """The law of the joints of a scene that have it, with the springs, dashpots and friction that it replaces."""
         contacts = scene.contacts
         joints = [i for i, bond in enumerate(contacts.bonds) if type(bond) is cls.bond]
         law = cls(cls.table(scene.bodies.rest.shape[1], len(lines) if joints else 0))  # type: ignore[call-arg]
@@ -68,7 +68,7 @@ class JointLaw:
         return law
 
     def begin(self, lines: Rows, which: Flags, bond: Any, area: Array) -> None:
-        """Write the numbers of the lines of one joint, and take over what the law holds of them.
+        """Write the numbers of the lines of one joint, and take over what the law replaces of theirs.
 
         Args:
             lines: all lines.

@@ -2,7 +2,7 @@
 
 A link stands between a point of a body and an anchor on the ground, on a fixed block or on another body. A kind of
 links is a class in a file of this folder, with its rows, its force, its energy, its accounts and what a later run
-remembers of it. `KINDS` of `links` lists the kinds, and nothing else knows which kinds there are.
+remembers of it. `KINDS` of `lists` lists the kinds, and nothing else knows which kinds there are.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class Kind:
         return links.names, cls(table)  # type: ignore[call-arg]
 
     @classmethod
-    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+    def from_scene(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """The links of this kind in a scene of a case, whose bodies are at rest."""
         raise NotImplementedError
 

@@ -31,7 +31,7 @@ act, settle, hold, stored, lost, holds = (method(name) for name in ("act", "sett
 
 def links_of(scene: Scene, case: AnyCase, bodies: Rows) -> tuple[tuple[tuple[str, ...], ...], Tables]:
     """The links of a scene of a case, whose bodies are at rest: their names, and a table, for each kind."""
-    names, links = zip(*(kind.of(scene, case, bodies) for kind in KINDS), strict=True)
+    names, links = zip(*(kind.from_scene(scene, case, bodies) for kind in KINDS), strict=True)
     return names, numbered(links)
 
 
@@ -46,8 +46,8 @@ def numbered(links: Tables) -> Tables:
 
 
 def laws_of(scene: Scene, lines: Rows) -> Tables:
-    """The laws of the joints of a scene, which take over what they hold of its lines."""
-    return tuple(law.of(scene, lines) for law in LAWS)
+    """The laws of the joints of a scene, which take over the springs of lines that they replace."""
+    return tuple(law.from_scene(scene, lines) for law in LAWS)
 
 
 def no_laws(d: int) -> Tables:

@@ -1,4 +1,4 @@
-"""Own laws of joints, see `own_law`: a class of a user's file answers for each line, wherever the loops ask.
+"""Own laws of joints, see `own_law`: a class of a user's file gives the stress of each line.
 
 A law that only presses gives its line the spring that it has at the pose: `k` is the secant stiffness there, and `bent`
 what the spring that holds the same energy has more. Friction, dashpots, touches and the ends of faces then follow as
@@ -111,9 +111,9 @@ class OwnLaws(JointLaw, Table):
     bond: ClassVar[Any] = Own
 
     @classmethod
-    def of(cls, scene: Scene, lines: Rows) -> Self:
+    def from_scene(cls, scene: Scene, lines: Rows) -> Self:
         """Their lines begin with the largest stiffness that they may have."""
-        law = super().of(scene, lines)
+        law = super().from_scene(scene, lines)
         weight, joint = GRAVITY * float(scene.bodies.mass.sum()), scene.contacts.joint
         for i, own in enumerate(scene.contacts.bonds):
             if isinstance(own, Own):

@@ -30,7 +30,7 @@ class OwnLinks(Kind, Table):
     booked = ("dashpots",)
 
     @classmethod
-    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+    def from_scene(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
         links = scene.links.owned
         laws = [law for law in links.user_laws if law is not None]

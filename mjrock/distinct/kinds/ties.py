@@ -34,7 +34,7 @@ class Ties(Kind, Table):
     booked = ("ties", "broken")
 
     @classmethod
-    def of(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
+    def from_scene(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene, where they bear nothing at rest if they push too."""
         ties = scene.ties
         begun = dict.fromkeys(("drawn", "struck", "due", "transit", "rate"), 0.0)

@@ -61,7 +61,7 @@ from .validity import (
 
 @dataclass
 class SearchState:
-    """What an update of the search knows of those before it.
+    """The state of the search between two updates.
 
     Args:
         validity: of the blocks.
@@ -126,7 +126,7 @@ class ContactSearch:
         interval = longest_interval(self.sizes[self.blocks.free])
         self.limits = Limits(start, self._limits(start), VALID_WAY * self.sizes, interval)
         blocks = np.column_stack(np.divmod(self.law.jointed, self.count))
-        self.motion, self.joints = Motion.none(start), JointState.intact(of[joint], blocks, left, rolled)
+        self.motion, self.joints = Motion.initial(start), JointState.intact(of[joint], blocks, left, rolled)
         self.state = self._no_contacts()
 
     def begun(self, supports: tuple[str, ...]) -> ContactSearch:
@@ -138,12 +138,12 @@ class ContactSearch:
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
         fresh.finder, fresh.state = self.finder.apart(), self._no_contacts()
-        fresh.motion, fresh.joints = Motion.none(self.limits.start), JointState.intact(*self.joints[:4])
+        fresh.motion, fresh.joints = Motion.initial(self.limits.start), JointState.intact(*self.joints[:4])
         return fresh
 
     def _no_contacts(self) -> SearchState:
         none, intact = np.zeros(0, dtype=np.int64), np.zeros(len(self.law.jointed), dtype=bool)
-        validity, zeros = Validity.nothing(self.limits.start, self.limits.interval), np.zeros(0)
+        validity, zeros = Validity.initial(self.limits.start, self.limits.interval), np.zeros(0)
         return SearchState(validity, intact, none, zeros, zeros, none, np.ones(self.count), 0.0)
 
     def _limits(self, start: Poses) -> Array:

@@ -200,7 +200,7 @@ class GivenPairs:
         """The largest dashpot over its spring of the requested pairs [s]."""
         return max((meets.retardation for meets in self.known.values() if meets is not None), default=0.0)
 
-    def of(self, number: int) -> PairProperties | None:
+    def of_pair(self, number: int) -> PairProperties | None:
         """What a pair has, by its number, or None."""
         if number not in self.known:
             self.known[number] = self.springs.of_pair(*divmod(number, self.blocks))
@@ -210,7 +210,7 @@ class GivenPairs:
         """Dashpot over spring of a block with others of higher numbers, zero where nothing is given [s], shape (n,)."""
         if isinstance(self.springs.pairs, PairProperties):
             return np.full(len(others), self.springs.pairs.retardation)
-        met = [self.of(number) for number in (one * self.blocks + others).tolist()]
+        met = [self.of_pair(number) for number in (one * self.blocks + others).tolist()]
         return np.array([0.0 if meets is None else meets.retardation for meets in met])
 
     def take(self, pair: Integers, shared: Array, friction: Array, alone: Flags) -> None:
@@ -218,7 +218,7 @@ class GivenPairs:
         if self.springs.pairs is None:
             return
         for number in np.unique(pair[alone]).tolist():
-            if (meets := self.of(number)) is not None:
+            if (meets := self.of_pair(number)) is not None:
                 there = alone & (pair == number)
                 sprung = there & np.isfinite(shared[:, 2])
                 friction[there] = meets.friction

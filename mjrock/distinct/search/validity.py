@@ -43,7 +43,7 @@ class Motion(NamedTuple):
     surge: Array
 
     @classmethod
-    def none(cls, start: Poses) -> Motion:
+    def initial(cls, start: Poses) -> Motion:
         """Of blocks that stand where they start."""
         about, surge = np.zeros((2, len(start.moved)))
         return cls(deepcopy(start), np.zeros_like(start.moved), about, surge)
@@ -71,12 +71,12 @@ class Validity(NamedTuple):
     left: Flags
 
     @classmethod
-    def nothing(cls, start: Poses, interval: float) -> Validity:
+    def initial(cls, start: Poses, interval: float) -> Validity:
         """Of blocks that stand where they start, with the longest time between two updates [s]."""
         count = len(start.moved)
         searched, outdated, left = np.zeros((3, count), dtype=bool)
         searches, valid_for = np.zeros(count, dtype=np.int64), np.full(count, interval)
-        return cls(searched, Motion.none(start), searches, valid_for, np.zeros(count), outdated, left)
+        return cls(searched, Motion.initial(start), searches, valid_for, np.zeros(count), outdated, left)
 
 
 class Limits(NamedTuple):
@@ -146,7 +146,7 @@ class JointState(NamedTuple):
 
 
 class SearchInput(NamedTuple):
-    """What an update of the search examines: the blocks and their motion, how far they may go without a search, their
+    """The input of an update of the search: the blocks and their motion, how far they may go without a search, their
     joints, which pairs have handed these over, and the validity of their contacts."""
 
     blocks: Blocks
