@@ -239,6 +239,10 @@ THUMBNAILS = {
     "18_contacts_in_mujoco": Thumbnail("A ball rests on a spring and a dashpot.", ball),
     "19_church_facade": Thumbnail("A church façade stands between its side walls and is held by two bars.", church),
     "20_town": Thumbnail("Façades of a street have the colours of how likely they lean far.", street),
+    "21_terrace": found(
+        lambda of, ax: in_the_air(Solids(of["answer"].moving.at([-1])), ax),
+        "Two façades of a terrace have fallen, and ties hold the one between them.",
+    ),
 }
 """The small picture of each example."""
 

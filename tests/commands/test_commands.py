@@ -143,9 +143,9 @@ def test_nobody_reads_on():
 
 def test_examples_are_listed_with_their_titles(capsys):
     lines = written(capsys, "examples")
-    assert len(lines) == 20 + 2
+    assert len(lines) == 21 + 2
     assert lines[0].split(maxsplit=1) == ["01_release", "A wall released against its side stop"]
-    assert lines[19].split(maxsplit=1) == ["20_town", "A town of façades"]
+    assert lines[20].split(maxsplit=1) == ["21_terrace", "A block of a street"]
 
 
 @pytest.mark.parametrize("name", ["7", "07", "push_over", "07_push_over", "07_push_over.py"])
@@ -155,7 +155,7 @@ def test_an_example_has_a_number_and_a_name(name):
 
 def test_an_example_that_is_not_there_is_refused_with_those_that_are(capsys):
     said = refused(capsys, "examples", "bridge")
-    assert said.startswith("error: there is no example 'bridge'; give a number from 1 to 20 or one of 01_release, ")
+    assert said.startswith("error: there is no example 'bridge'; give a number from 1 to 21 or one of 01_release, ")
 
 
 SCRIPT = '''"""
