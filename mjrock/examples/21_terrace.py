@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 
-HOUSES, UNIT = 3, (0.8, 0.5)  # -, m
-WIDTH, HEIGHT, DEPTH = 4.0, 6.0, 3.0  # m, of a house
-TIED = (1,)  # houses with ties, from 0
+HOUSES, UNIT_SIZE = 3, (0.8, 0.5)  # -, m
+HOUSE_WIDTH, HOUSE_HEIGHT, HOUSE_DEPTH = 4.0, 6.0, 3.0  # m, of a house
+TIED_HOUSES = (1,)  # houses with ties, from 0
 LAST = HOUSES - 1
 
 
@@ -31,10 +31,10 @@ LAST = HOUSES - 1
 def house(number):
     """The blocks of a house."""
     made = mr.blocks.facade(
-        WIDTH,
-        HEIGHT,
-        DEPTH,
-        UNIT,
+        HOUSE_WIDTH,
+        HOUSE_HEIGHT,
+        HOUSE_DEPTH,
+        UNIT_SIZE,
         thickness=0.5,
         returns="both" if number == LAST else "left",
         openings=[
@@ -43,7 +43,7 @@ def house(number):
         ],
         density=1800.0,
     )
-    place = (0.0, WIDTH * number, 0.0)
+    place = (0.0, HOUSE_WIDTH * number, 0.0)
     return [
         mr.Polyhedron(
             np.add(block.corners, place),
@@ -56,8 +56,8 @@ def house(number):
 
 
 ground = mr.Polyhedron.box(
-    (12 * HEIGHT, WIDTH * HOUSES + 8 * HEIGHT, 1.0),
-    (0.0, 0.5 * WIDTH * LAST, -0.5),
+    (12 * HOUSE_HEIGHT, HOUSE_WIDTH * HOUSES + 8 * HOUSE_HEIGHT, 1.0),
+    (0.0, 0.5 * HOUSE_WIDTH * LAST, -0.5),
     fixed=True,
     name="ground",
 )
@@ -76,10 +76,13 @@ def nearest(place):
 
 
 ties = []
-for number in TIED:
+for number in TIED_HOUSES:
     for side in (-1.0, 1.0):
-        y, z = WIDTH * (number + 0.5 * side) - 0.3 * side, HEIGHT - 0.25
-        front, back = nearest((-0.25, y, z)), nearest((-DEPTH, y, z))
+        y, z = (
+            HOUSE_WIDTH * (number + 0.5 * side) - 0.3 * side,
+            HOUSE_HEIGHT - 0.25,
+        )
+        front, back = nearest((-0.25, y, z)), nearest((-HOUSE_DEPTH, y, z))
         start, end = front.centroid, back.centroid
         tie = mr.Tie(
             stiffness=2e7,
