@@ -189,7 +189,7 @@ def linked(scene: Scene) -> Iterator[str]:
     links, lengths = scene.links, dict(zip(scene.links.sprung.names, scene.ties.reach.tolist(), strict=True))
     for i, name in enumerate(links.names):
         law = LinkLaw(*links.law[i])
-        attributes: dict[str, object] = {"damping": law.c} if law.c > 0 or law.k == 0 else {}
+        attributes: dict[str, object] = {"damping": law.c} if law.damps or law.k == 0 else {}
         if law.k > 0:
             yields = {"springyield": law.strength / law.k} if law.yields else {}
             slack_from = lengths[name] if law.push > 0 else 0

@@ -57,7 +57,7 @@ class Wall:
         self.ties = [(tie.height - self.up, tie) for tie in case.springs.values() if tie.law.push == 0]
         self.sliders: dict[str, Slider] = {}  # of friction dampers, which bear nothing at rest
         self.slipping: list[tuple[float, Anchored]] = []
-        self.dampers = [link for link in case.links.values() if link.law.c > 0]
+        self.dampers = [link for link in case.links.values() if link.law.damps]
         self.rest = self._rest()
         self.slipping = [(link.height - self.up, link) for link in case.springs.values() if link.law.push > 0]
         names = (name for name, link in case.springs.items() if link.law.push > 0)

@@ -19,7 +19,7 @@ from ..compiled import compiled, inlined
 from ..geometry.frames import Freedom, frames_of, push_body, take_frames
 from ..geometry.kinematics import LinkEnds, ends, parting
 from ..geometry.vectors import dot, scaled
-from ..problem.wall.effect import resistance
+from ..problem.wall.effect import damping_coefficient, resistance
 from ..quantities import Array
 
 
@@ -70,7 +70,7 @@ def damping_rate(dampers: Dampers, pose: Array, principal: tuple[csr_array, Arra
         principal: velocities along principal axes and their masses, see `masses.principal`.
     """
     frames, rates, (columns, masses) = frames_of(pose, Freedom(dampers.links.axes)), [0.0], principal
-    for i, c in enumerate(dampers.law["c"]):
+    for i, c in enumerate(damping_coefficient(dampers.law.view(np.recarray))):
         push = np.zeros_like(masses)
         push_ends(dampers.links, i, 1.0, frames, push)
         rates.append(float(c * ((columns.T @ push) ** 2 / masses).sum()))

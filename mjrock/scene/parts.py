@@ -379,7 +379,8 @@ class Links:
     @cached_property
     def damped(self) -> Links:
         """The links with a dashpot, and those without a spring and a law of their own."""
-        return self.chosen(((self.law["c"] > 0) | (self.law["k"] == 0)) & ~self.are_owned)
+        damps = np.array([LinkLaw(*law).damps for law in self.law], dtype=bool)
+        return self.chosen((damps | (self.law["k"] == 0)) & ~self.are_owned)
 
 
 @dataclass(frozen=True, eq=False)

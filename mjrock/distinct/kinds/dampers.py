@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ...compiled import inlined
 from ...problem.masonry.case import AnyCase
-from ...problem.wall.effect import DASHPOT, resistance
+from ...problem.wall.effect import DASHPOT, damping_coefficient, resistance
+from ...quantities import Array
 from ...scene.scene import Scene
 from ..rows import Rows
 from ..system import Books, System
@@ -28,6 +31,10 @@ class Dampers(Kind, Table):
     def look_ahead(self, lead: float) -> None:
         """All of them."""
         self.rows["lead"] = lead
+
+    def springs(self) -> tuple[Array, Array]:
+        """No stiffness, and the coefficient of their dashpots [N/m, N s/m]."""
+        return np.zeros(len(self.rows)), damping_coefficient(np.asarray(self.rows).view(np.recarray))
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:

@@ -7,6 +7,7 @@ those springs, dashpots and friction of theirs that it replaces. It is a class i
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -50,6 +51,8 @@ class JointLaw:
             *vectors(2 * d - 3, "grip", "dragged"),  # stretch of the shear spring [m], its force in the last step [N]
             *cls.own,
         ]
+        if twice := {name for name, many in Counter(name for name, *_ in fields).items() if many > 1}:
+            raise TypeError(f"{cls.__name__} has {', '.join(sorted(twice))} as a number of a joint too; name one anew")
         return rows(np.dtype(fields), count)
 
     @classmethod

@@ -114,6 +114,11 @@ class LinkLaw(NamedTuple):
         return self.strength < math.inf
 
     @property
+    def damps(self) -> bool:
+        """Whether it has a dashpot."""
+        return bool(resistance(self, 1.0) > 0)
+
+    @property
     def holds(self) -> bool:
         """Whether it may hold what stands: it has a spring that pulls at rest. One that pushes too bears nothing
         there."""
@@ -145,6 +150,12 @@ DASHPOT = ("c",)
 def resistance(law: LinkLaw, rate: float) -> float:
     """Force with which the dashpot of a link, or of a row, resists the rate of its length [N], for all solvers."""
     return law.c * rate
+
+
+def damping_coefficient(law: Any) -> Any:
+    """How fast the force of the dashpot of a link, or of many rows, grows at most with the rate of its length up to
+    1 m/s [N s/m]. The longest stable step is that of a linear dashpot with this coefficient."""
+    return law.c
 
 
 class ReportItem(Protocol):

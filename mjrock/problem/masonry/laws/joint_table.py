@@ -271,9 +271,10 @@ class JointTable(NamedTuple):
         if any(own):
             unknown[f"law of {names(own)}"] = ", ".join(sorted({bond.name for bond in own if bond}))
         for held, beside in unknown.items():
+            rest = "it" if beside in numbers else "laws of your own"
             raise ValueError(
                 f"{held}: {what} knows {', '.join(known[:-1])} and {known[-1]} of a joint, and no {beside}; "
-                "solve_explicit takes laws of your own"
+                f"solve_explicit takes {rest}"
             )
         if any(self.bonds):
             raise ValueError(
