@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.kinds.law import JointLaw
+from mjrock.distinct.rows import kinds, numbers, rows
 from mjrock.distinct.search import pair_law
 from mjrock.geometry.frames import PLANE, SPACE
 
@@ -215,3 +216,11 @@ def test_faces_without_a_joint_that_hardly_lie_over_each_other_have_less(in_spac
     whole = (2.0 if in_space else 1.0) * 0.2
     for area, share in ((0.05 * whole, 0.5), (0.1 * whole, 1.0), (0.5 * whole, 1.0), (0.0, 1.0)):
         assert places(2, area=area, in_space=in_space)["k"] == pytest.approx(3.0 * share)
+
+
+def test_a_number_of_a_law_that_joints_have_already_is_named():
+    class Doubled(JointLaw):
+        own = numbers("friction", "worn")
+
+    with pytest.raises(TypeError, match="Doubled has friction as a number of a joint too"):
+        Doubled.table(2, 1)
