@@ -79,6 +79,13 @@ def of_pairs(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     return csr_array((values[there], (rows[there], columns[there])), shape=(unknowns, unknowns))
 
 
+def block_diagonal(blocks: Array) -> csr_array:
+    """The matrix with square blocks along its diagonal, shape (n k, n k), of blocks of the shape (n, k, k)."""
+    (n, size, _), (block, row, column) = blocks.shape, np.nonzero(blocks)
+    there = np.array([size * block + row, size * block + column], dtype=np.int32)
+    return csr_array((blocks[block, row, column], tuple(there)), shape=(n * size, n * size))
+
+
 def summed(matrices: Sequence[csr_array]) -> csr_array:
     """The sum of some matrices, added at once."""
     rows, columns = (np.concatenate([part.tocoo().coords[i] for part in matrices]) for i in range(2))

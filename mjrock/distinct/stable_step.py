@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 import scipy
-from scipy.sparse import block_diag, coo_array, csr_array, vstack
+from scipy.sparse import csr_array, vstack
 
-from ..linear import rates_of, times
+from ..linear import block_diagonal, rates_of, times
 from ..problem.masonry.blocks.joints_in_space import axes_across
 from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
@@ -55,7 +55,7 @@ def rates_of_links(system: System) -> tuple[float, float]:
 
 def root_of_masses(system: System) -> csr_array:
     """R with R R^T = M^-1, shape (unknowns, unknowns)."""
-    return csr_array(block_diag([coo_array(root) for root in roots_of_masses(system.bodies)]))
+    return block_diagonal(roots_of_masses(system.bodies))
 
 
 def stiffest_lines(system: System) -> Rows:

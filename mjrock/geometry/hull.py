@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 import scipy
 
-from ..quantities import Array
+from ..quantities import Array, Integers, frozen
 from .convex import cross_in_space, next_of
 
 Faces = tuple[tuple[int, ...], ...]
@@ -20,6 +20,8 @@ COPLANAR = 1e-5
 """Distance from the plane of a face up to which a vertex belongs to it, over the extent of the points [-]."""
 THINNEST = 1e-4
 """Smallest thickness of points that bound a body, over their extent [-]."""
+SHAPES = 512
+"""Latest shapes of bodies whose hull, volume and edges are kept: masonry has many blocks of few shapes [-]."""
 
 
 class Hull(NamedTuple):
@@ -96,6 +98,12 @@ class Convex:
         return Convex(self.corners - point, self.faces, self.normals)
 
     @cached_property
+    def sides(self) -> tuple[Side, ...]:
+        """Its faces."""
+        pairs = zip(self.faces, self.normals, strict=True)
+        return tuple(Side(self.corners[list(face)], normal) for face, normal in pairs)
+
+    @cached_property
     def offsets(self) -> Array:
         """Where the faces are along their normals, by the mean of their corners [m], shape (faces,)."""
         pairs = zip(self.faces, self.normals, strict=True)
@@ -108,14 +116,13 @@ class Convex:
     @cached_property
     def edge_ends(self) -> Array:
         """Ends of the edges [m], each once, shape (edges, 2, 3)."""
-        pairs = {(min(edge), max(edge)) for face in self.faces for edge in face_edges(face)}
-        return self.corners[np.array(sorted(pairs))]
+        return self.corners[_ends_of_edges(self.faces)]
 
     @cached_property
     def edges(self) -> Array:
         """Unit vectors along the edges, those that are parallel once, shape (directions, 3)."""
         ways = self.edge_ends[:, 1] - self.edge_ends[:, 0]
-        return unlike_ways(ways / np.linalg.norm(ways, axis=1)[:, None])
+        return _unlike_ways((ways / np.linalg.norm(ways, axis=1)[:, None]).tobytes())
 
     @cached_property
     def bulk(self) -> Bulk:
@@ -140,7 +147,14 @@ def hull_of(points: Array) -> Hull:
         ValueError: for points that lie in a plane, with the thickness that they have.
     """
     extent = float(np.ptp(points, axis=0).max())
-    centred = (points - points.mean(axis=0)) / extent
+    hull = _hull_of_shape(((points - points.mean(axis=0)) / extent).tobytes(), extent)
+    return hull._replace(normals=hull.normals.copy(), depth=hull.depth.copy())
+
+
+@lru_cache(maxsize=SHAPES)
+def _hull_of_shape(points: bytes, extent: float) -> Hull:
+    """The hull of points about their mean over their extent [m]: the bytes of an array of the shape (n, 3)."""
+    centred = np.frombuffer(points).reshape(-1, 3).copy()
     thickness = float(np.ptp(centred @ np.linalg.svd(centred, full_matrices=False)[2][-1]))
     if not thickness > THINNEST:
         raise ValueError(f"vertices lie in a plane: they are {thickness * extent:.3g} m thick")
@@ -149,11 +163,11 @@ def hull_of(points: Array) -> Hull:
     except scipy.spatial.QhullError:
         raise ValueError(f"vertices enclose no body: they are {thickness * extent:.3g} m thick") from None
     sets = _coplanar(centred, facets)
-    number_of_faces = np.zeros(len(points), dtype=int)
+    number_of_faces = np.zeros(len(centred), dtype=int)
     for members in sets:
         number_of_faces[members] += 1
     corners = np.flatnonzero(number_of_faces >= 3)  # a point on an edge belongs to two faces
-    number = np.full(len(points), -1)
+    number = np.full(len(centred), -1)
     number[corners] = np.arange(len(corners))
     faces, normals = [], []
     for members in sets:
@@ -199,6 +213,13 @@ def _around(ring: Array, middle: Array) -> tuple[list[int], Array]:
     return [*order[first:].tolist(), *order[:first].tolist()], normal / np.linalg.norm(normal)
 
 
+@lru_cache(maxsize=SHAPES)
+def _ends_of_edges(faces: Faces) -> Integers:
+    """Numbers of the corners at the ends of the edges of faces, each once, shape (edges, 2)."""
+    pairs = {(min(edge), max(edge)) for face in faces for edge in face_edges(face)}
+    return frozen(sorted(pairs))
+
+
 def face_edges(face: tuple[int, ...]) -> list[tuple[int, int]]:
     """The edges of a face, in its order."""
     return list(pairwise((*face, face[0])))
@@ -228,10 +249,12 @@ def _sides(n: int) -> Faces:
     return tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
 
 
-def unlike_ways(ways: Array) -> Array:
-    """Unit vectors, shape (n, 3), those that are parallel once."""
+@lru_cache(maxsize=SHAPES)
+def _unlike_ways(vectors: bytes) -> Array:
+    """Unit vectors, those that are parallel once, from the bytes of an array of the shape (n, 3)."""
+    ways = np.frombuffer(vectors).reshape(-1, 3)
     apart = np.abs(ways @ ways.T) < 1 - 1e-12
-    return np.asarray(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
+    return frozen(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
 
 
 def bulk_of(corners: Array, faces: Faces) -> Bulk:
@@ -245,7 +268,15 @@ def bulk_of(corners: Array, faces: Faces) -> Bulk:
         faces: numbers of the corners of each face, counterclockwise as seen from outside.
     """
     origin = corners.mean(axis=0)
-    edges = corners[triangles_of(faces)] - origin  # one tetrahedron each: three edges from the origin
+    bulk = _bulk_of_shape((corners - origin).tobytes(), faces)
+    return Bulk(bulk.volume, origin + bulk.centroid, bulk.second.copy())
+
+
+@lru_cache(maxsize=SHAPES)
+def _bulk_of_shape(corners: bytes, faces: Faces) -> Bulk:
+    """The same from the mean of the corners [m], from the bytes of an array of the shape (n, 3)."""
+    # one tetrahedron for each triangle: three edges from the origin
+    edges = np.frombuffer(corners).reshape(-1, 3)[triangles_of(faces)]
     determinants = np.linalg.det(edges)
     volume = float(determinants.sum()) / 6
     sums = edges.sum(axis=1)
@@ -253,4 +284,4 @@ def bulk_of(corners: Array, faces: Faces) -> Bulk:
     # integral of x x^T over a tetrahedron: determinant/120 (s s^T + sum of e e^T)
     weighted = determinants[:, None, None] / 120
     second = (weighted * (sums[:, :, None] * sums[:, None, :] + edges.transpose(0, 2, 1) @ edges)).sum(axis=0)
-    return Bulk(volume, origin + middle, second - volume * np.outer(middle, middle))
+    return Bulk(volume, middle, second - volume * np.outer(middle, middle))

@@ -23,16 +23,13 @@ from ..problem.wall.effects import link_effects
 from ..quantities import GRAVITY, Array, Integers, named, require_kind
 from .course import Course
 from .parts import GROUND, Bodies, ContactPoints, JointSprings, Limits, attachments
-from .rest import UnsettledError
+from .rest import UnsettledError, memory_of
 from .scene import Scene
 
 SETTLEMENT_OF_STIFF = 1e-5
 """Deformation of joints that count as stiff, at each line under the weight of all blocks [m]."""
 BED = 0.5
 """Vertical part of the normal of a joint that counts as level [-]."""
-MEMORY_OF_BLOCK, MEMORY_OF_LINE = {False: 30e3, True: 70e3}, {False: 4e3, True: 6e3}
-"""Memory of set-up for each block and for each of its contact lines, in the plane and in space [bytes]. The factors of
-the stiffness in the search for the pose of rest take the most. `scripts/measure/setup_cost.py` measures it."""
 SHARE_OF_FARTHEST = 0.1
 """Displacement of a block that falls in the search for the pose of rest, over the largest of all blocks [-]."""
 
@@ -56,11 +53,6 @@ def masonry_scene(case: MasonryCase) -> Scene:
     except ValueError as error:
         raise ValueError(f"{error}; settled=False in the case runs it as drawn, from springs without load") from None
     return standing_masonry(case.masonry, case.passive)
-
-
-def memory_of(blocks: int, lines: int, *, in_space: bool) -> float:
-    """Memory that set-up of some free blocks with some contact lines takes [bytes], estimated."""
-    return blocks * MEMORY_OF_BLOCK[in_space] + lines * MEMORY_OF_LINE[in_space]
 
 
 def require_memory(masonry: Masonry) -> None:

@@ -8,10 +8,11 @@ and Iyz of each body, shape (n, 3). In the plane there are none, shape (0, 3).
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csr_array, eye_array
+from scipy.sparse import csr_array, eye_array
 
 from ..compiled import inlined
 from ..geometry.vectors import Vector, spun
+from ..linear import block_diagonal
 from ..quantities import Array
 
 PRODUCT_ROUNDING = 1e-12
@@ -43,10 +44,8 @@ def principal(mass: Array, inertia: Array) -> tuple[csr_array, Array]:
         masses = mass_diagonals(mass, inertia)
         return csr_array(eye_array(len(masses))), masses
     moments, axes = np.linalg.eigh(inertia)
-    blocks = [block for turn in axes for block in (np.eye(3), turn)]
-    return csr_array(block_diag([coo_array(block) for block in blocks])), np.column_stack(
-        [mass, mass, mass, moments]
-    ).ravel()
+    blocks = np.stack([np.broadcast_to(np.eye(3), axes.shape), axes], axis=1).reshape(-1, 3, 3)
+    return block_diagonal(blocks), np.column_stack([mass, mass, mass, moments]).ravel()
 
 
 @inlined

@@ -22,6 +22,8 @@ import numpy as np
 import scipy
 from scipy.sparse import csc_array, csr_array, diags_array, vstack
 
+from ..bars import Bar
+from ..geometry.frames import SPACE
 from ..geometry.kinematics import Places, gaps
 from ..geometry.poses import moved, turned
 from ..linear import lowest_mode, solution, sprung, times
@@ -70,6 +72,9 @@ SOFT_STARTS = 100.0, 0.01, 0.1
 the undeformed pose, in turn [-]: stiff springs slip more on the way, as of blocks beside a rough wall."""
 POSES = 300
 """Most poses of a search."""
+MEMORY_OF_BLOCK, MEMORY_OF_LINE = {False: 30e3, True: 70e3}, {False: 4e3, True: 6e3}
+"""Memory of set-up for each block and for each of its contact lines, in the plane and in space [bytes]. The factors of
+the stiffness in the search for the pose of rest take the most. `scripts/measure/setup_cost.py` measures it."""
 
 
 class UnsettledError(ValueError):
@@ -91,10 +96,12 @@ class Search(NamedTuple):
         shear: stiffness of the contacts along their faces [N/m], shape (m,).
         limited: whether friction has its limit. Without one it holds the mean slip of the points of a joint that touch:
             points that were all held would lock its rotation.
+        bar: counts the poses that are tried.
     """
 
     shear: Array
     limited: bool
+    bar: Bar
 
 
 class Sliders(NamedTuple):
@@ -188,26 +195,41 @@ def settled(potential: Potential, k_s: Array) -> tuple[Array, Array]:
         UnsettledError: if no such pose is found near the undeformed one, or the bodies fall from it.
     """
     k = potential.structure.places.k
-    search = Search(np.where(np.isfinite(k_s), k_s, RIGID * k), limited=True)
     *starts, last = (None, *SOFT_STARTS)
-    for soft in starts:
-        with suppress(UnsettledError):
-            return searched_from(potential, search, soft)
-    return searched_from(potential, search, last)
+    with shown_search(potential) as bar:
+        search = Search(np.where(np.isfinite(k_s), k_s, RIGID * k), limited=True, bar=bar)
+        for soft in starts:
+            with suppress(UnsettledError):
+                return searched_from(potential, search, soft)
+        return searched_from(potential, search, last)
+
+
+def memory_of(blocks: int, lines: int, *, in_space: bool) -> float:
+    """Memory that set-up of some free blocks with some contact lines takes [bytes], estimated."""
+    return blocks * MEMORY_OF_BLOCK[in_space] + lines * MEMORY_OF_LINE[in_space]
+
+
+def shown_search(potential: Potential) -> Bar:
+    """A bar of the poses that a search has tried, with the memory that it needs."""
+    places, masses = potential.structure.places, potential.structure.masses
+    in_space = places.freedom == SPACE
+    needed = memory_of(len(masses) // places.freedom.nv, len(places.k), in_space=in_space)
+    return Bar(f"pose of rest, about {needed / 1e9:.2g} GB", "poses")
 
 
 def searched_from(potential: Potential, search: Search, soft: float | None) -> tuple[Array, Array]:
     """What `settled` returns, by a search from the undeformed pose, or from that on springs of a shear stiffness over
     the normal one [-]."""
     k, freedom = potential.structure.places.k, potential.structure.places.freedom
-    start = None if soft is None else searched(potential, Search(soft * k, limited=True))[0]
+    start = None if soft is None else searched(potential, search._replace(shear=soft * k))[0]
     pose, grips = searched(potential, search, start)
     return pose.reshape(-1, freedom.nq), grips.drag
 
 
 def held(potential: Potential) -> Array:
     """The pose of rest of bodies that friction holds without a limit, shape (n, nq), see `settled`."""
-    pose, _ = searched(potential, Search(RIGID_WITHOUT_LIMIT * potential.structure.places.k, limited=False))
+    with shown_search(potential) as bar:
+        pose, _ = searched(potential, Search(RIGID_WITHOUT_LIMIT * potential.structure.places.k, False, bar))
     return pose.reshape(-1, potential.structure.places.freedom.nq)
 
 
@@ -299,6 +321,7 @@ def exact(potential: Potential, search: Search, trial: Trial) -> Trial | None:
 
 def tried(potential: Potential, search: Search, pose: Array, touches: bool = False) -> Trial:
     """The forces at a pose of shape (n nq,); where the search starts, all contacts touch."""
+    search.bar.add()
     openings, rates = potential.openings(pose), potential.rates(pose)
     closed = touching(potential, pose) if touches else potential.closed(openings)
     push = potential.forces_at(openings)

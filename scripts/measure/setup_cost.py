@@ -21,7 +21,8 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock.distinct.search.constants import NEAR
 from mjrock.distinct.setup import masonry_at_rest
-from mjrock.scene.masonry import masonry_scene, memory_of
+from mjrock.scene.masonry import masonry_scene
+from mjrock.scene.rest import memory_of
 from scripts.shared import cli
 
 BLOCKS = {"wall": (1000, 5000), "façade": (1000, 3000, 24_000)}

@@ -73,7 +73,7 @@ def polygon(corners, size):
     """A face across x whose outline is regular."""
     angles = 2 * np.pi * np.arange(corners) / corners
     ring = size * np.column_stack([np.zeros(corners), np.cos(angles), np.sin(angles)])
-    return Face.in_space(Side(ring, np.array([1.0, 0.0, 0.0])))
+    return Face.in_space([Side(ring, np.array([1.0, 0.0, 0.0]))])[0]
 
 
 def test_faces_of_many_outlines_have_the_edges_of_each_alone():

@@ -35,6 +35,29 @@ def test_points_inside_on_a_face_and_on_an_edge_are_no_corners(turn):
     assert hull.depth == pytest.approx([0.2] + 10 * [0.0], abs=1e-12)
 
 
+@pytest.mark.parametrize("turn", [np.array, rotated])
+def test_a_body_of_equal_shape_elsewhere_has_the_same_faces_and_arrays_of_its_own(turn):
+    points, far = turn(BOX), np.array([4.0, -8.0, 16.0])
+    here = hull_of(points)
+    here.normals[:], here.depth[:] = np.nan, np.nan  # whoever writes into one leaves the next as it is
+    for there in (hull_of(points), hull_of(points + far)):
+        assert set(there.faces) == set(here.faces)  # rounding decides which of two equal ones comes first
+        assert np.isfinite(there.normals).all()
+        assert np.abs(there.depth).max() < 1e-12
+    bulk, moved = bulk_of(points, here.faces), bulk_of(points + far, here.faces)
+    assert moved.centroid - bulk.centroid == pytest.approx(far, rel=1e-14)
+    assert moved.second == pytest.approx(bulk.second, rel=1e-12, abs=1e-15)
+
+
+def test_a_body_of_equal_shape_and_another_size_is_another_body():
+    bulks = [bulk_of(size * BOX, hull_of(size * BOX).faces) for size in (1.0, 2.0)]
+    assert bulks[1].volume == pytest.approx(8 * bulks[0].volume)
+    thin = BOX * [1.0, 1.0, 1e-5]
+    for size in (1.0, 2.0):  # the message has the size of the body that is refused
+        with pytest.raises(ValueError, match=f"{size * 2e-5:.3g} m thick"):
+            hull_of(size * thin)
+
+
 def test_a_face_that_is_bent_by_less_than_the_rounding_of_a_file_is_one():
     for bend, faces in ((1e-6, 6), (1e-2, 7)):
         points = BOX.copy()

@@ -4,7 +4,9 @@ import pytest
 
 import mjrock as mr
 from mjrock import machine
+from mjrock.bars import progress_given_to
 from mjrock.scene import masonry as scene
+from mjrock.scene.rest import memory_of
 
 COLUMN = mr.Masonry.column(width=0.5, height=2.0, drums=4)
 
@@ -19,8 +21,18 @@ def test_what_does_not_fit_is_refused_with_both_figures(solve, settled, monkeypa
 
 
 def test_the_estimate_grows_with_blocks_and_lines():
-    few, more = (scene.memory_of(1000, lines, in_space=True) for lines in (10_000, 20_000))
-    assert 0 < few < more < scene.memory_of(2000, 20_000, in_space=True) == 2 * few
+    few, more = (memory_of(1000, lines, in_space=True) for lines in (10_000, 20_000))
+    assert 0 < few < more < memory_of(2000, 20_000, in_space=True) == 2 * few
+
+
+def test_the_search_for_rest_has_a_bar_with_the_memory_that_it_needs():
+    seen, column = [], mr.Masonry.column(width=0.51, height=2.0, drums=4)
+    scene.standing_masonry.cache_clear()
+    with progress_given_to(seen.append):
+        pose = scene.standing_masonry(column).at_rest
+    assert pose[:, 2].max() < 0
+    assert [each.done for each in seen] == list(range(1, len(seen) + 1))
+    assert {each.what for each in seen} == {f"pose of rest, about {memory_of(4, 16, in_space=True) / 1e9:.2g} GB"}
 
 
 @pytest.mark.parametrize(("limit", "least"), [("max", 2048e3), ("1000000", 1e6), (None, 2048e3)])

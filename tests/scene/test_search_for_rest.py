@@ -7,6 +7,7 @@ import pytest
 from scenes import changed, two_blocks
 
 import mjrock as mr
+from mjrock.bars import Bar
 from mjrock.geometry.poses import moved
 from mjrock.problem.wall.effect import LinkLaw
 from mjrock.scene import rest
@@ -16,7 +17,7 @@ WEIGHT = 2000.0 * 0.6 * 2.1 * mr.GRAVITY
 
 
 def search_in(scene, *, limited=True):
-    return rest.Search(1e3 * scene.contacts.k, limited)
+    return rest.Search(1e3 * scene.contacts.k, limited, Bar("rest", "poses"))
 
 
 def sliders(scene, push, *, limited=True):

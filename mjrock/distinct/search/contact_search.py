@@ -311,12 +311,15 @@ class ContactSearch:
 def _rolled(geometry: RestGeometry) -> Array:
     """1 less the cosine of the angle of its faces up to which each joint serves [-], shape (joints,)."""
     normals = [np.array([side.normal for side in solid.sides]) for solid in geometry.solids]
+    shapes, known = [own.tobytes() for own in normals], dict[tuple[bytes, int], float]()
     rolled = np.empty(len(geometry.joints))
     for i, joint in enumerate(geometry.joints):
-        cosine = -1.0
-        for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
-            beside = normals[block] @ normals[block][side]
-            cosine = max(cosine, float(beside[beside < ONE_PLANE].max(initial=-1.0)))
+        ends = list(zip((joint.below, joint.above), joint.sides, strict=True))
+        for block, side in ends:
+            if (shapes[block], side) not in known:
+                beside = normals[block] @ normals[block][side]
+                known[shapes[block], side] = float(beside[beside < ONE_PLANE].max(initial=-1.0))
+        cosine = max(known[shapes[block], side] for block, side in ends)
         rolled[i] = 1 - math.cos(ROLLED * math.acos(cosine))
     return rolled
 

@@ -74,7 +74,6 @@ class Solids(NamedTuple):
         outlines = [np.add(face, at) for block, at in zip(blocks, corner[:-1], strict=True) for face in block.faces]
         corners = np.concatenate([block.corners - at for block, at in zip(blocks, centroids, strict=True)])
         axes = (0, 2) if flat else SPACE.axes
-        around_faces = [np.diff(corners[[*outline, outline[0]]][:, axes], axis=0) for outline in outlines]
         edges = [np.empty((0, 3)) if flat else block.edges for block in blocks]
         normals = np.concatenate([block.normals for block in blocks])
         side = np.arange(len(outlines)) if side is None else side
@@ -90,7 +89,7 @@ class Solids(NamedTuple):
             first=_begins(outlines),
             inside=np.concatenate(inside),
             owner=owner,
-            extent=np.array([np.linalg.norm(ways, axis=1).sum() for ways in around_faces]),
+            extent=_lengths(corners[:, axes], outlines),
             side=side,
             around=np.concatenate(around),
             begin=_begins(around),
@@ -179,6 +178,16 @@ def move(solids: Solids, place: Array, change: Array, moved: Solids) -> None:
 def _begins(tables: Iterable[Array | Integers]) -> Integers:
     """Where each of some tables begins, one after the other, and where the last one ends."""
     return np.cumsum([0, *map(len, tables)])
+
+
+def _lengths(corners: Array, outlines: Sequence[Integers]) -> Array:
+    """Length of each outline, from the numbers of its corners [m], shape (outlines,)."""
+    counts, lengths = np.array([len(outline) for outline in outlines]), np.empty(len(outlines))
+    for count in np.unique(counts):
+        which = np.flatnonzero(counts == count)
+        rings = corners[np.array([outlines[i] for i in which.tolist()])]
+        lengths[which] = np.linalg.norm(np.roll(rings, -1, axis=1) - rings, axis=2).sum(axis=1)
+    return lengths
 
 
 def parts_of(solids: Sequence[Solid], half: float, *, flat: bool) -> list[Convex]:

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csr_array, eye_array, vstack
+from scipy.sparse import csr_array, eye_array, vstack
 
 from ...geometry.convex import exact_shares, sectioned, spread, within
-from ...linear import averaged, entries, lowest_square, rates_of, sprung
-from ...quantities import Array, Integers
+from ...linear import averaged, block_diagonal, entries, lowest_square, rates_of, sprung
+from ...quantities import Array, Flags, Integers
 from ..damping.contacts import contact_lines
 from .blocks.compound import AnyBlock
 from .blocks.joints import LEVEL, Joint
@@ -98,41 +98,48 @@ def lines_of(
     Those that are `bonded` have the stiffness k_n I in bending, see `geometry.convex.sectioned`.
     """
     rows, at, normal, k = [], [], [], []
-    middle = np.mean([block.centroid for block in blocks if not block.fixed], axis=0)
+    divided: dict[tuple[bytes, int, bool], tuple[Array, Array]] = {}
+    centroids, fixed = np.array([block.centroid for block in blocks]), np.array([block.fixed for block in blocks])
+    far = np.linalg.norm((centroids - centroids[~fixed].mean(axis=0))[:, :-1], axis=1).tolist()
     counts = np.broadcast_to(points, len(joints)).tolist()
     for number, (joint, count) in enumerate(zip(joints, counts, strict=True)):
         k_joint, exact = k_n[number], bonded is not None and bonded[number]
         if isinstance(joint, Joint):
-            own = _on_edge(joint, count, k_joint, exact)
+            spots = list(_on_edge(joint, count, k_joint, exact))
         else:
             faces = [blocks[i].sides[j].corners for i, j in zip((joint.below, joint.above), joint.sides, strict=True)]
-            flat, areas = sectioned(joint.flat, count) if exact else spread(joint.flat, count)
-            own = _on_face(joint, faces, flat, k_joint * areas)
-        below, above = blocks[joint.below], blocks[joint.above]
-        beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) < LEVEL and not below.fixed else ()
-        for spot in own:
+            shape = joint.flat.tobytes(), count, exact
+            if shape not in divided:
+                divided[shape] = sectioned(joint.flat, count) if exact else spread(joint.flat, count)
+            flat, areas = divided[shape]
+            spots = _on_face(joint, faces, flat, k_joint * areas)
+        below, above, upwards = blocks[joint.below], blocks[joint.above], joint.normal
+        vertical = mirrored and abs(upwards[-1]) < LEVEL and not below.fixed
+        beside = _outer(far[joint.above], far[joint.below]) if vertical else ()
+        alike = _have_corners(below, spots) == _have_corners(above, spots) if beside else ()
+        for i, spot in enumerate(spots):
             turns: tuple[bool, ...] = (spot.overhangs and not below.fixed,)
-            if beside and not spot.on_one and _has_corner(below, spot.at) == _has_corner(above, spot.at):
+            if beside and not spot.on_one and alike[i]:
                 turns = beside
             for turned in turns:
                 rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
                 at.append(spot.at)
-                normal.append(-joint.normal if turned else joint.normal)
+                normal.append(-upwards if turned else upwards)
                 k.append(spot.stiffness / len(turns))
     joint_of, body, face = np.array(rows, dtype=np.int64).T
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
 
 
-def _outer(above: AnyBlock, below: AnyBlock, middle: Array) -> tuple[bool, ...]:
+def _outer(above: float, below: float) -> tuple[bool, ...]:
     """Whether the point of a joint is on the block below, as that is farther from the middle of the masonry, apart from
-    heights. Both ways where the two blocks are as far."""
-    own, other = (float(np.linalg.norm((block.centroid - middle)[:-1])) for block in (above, below))
-    return (False, True) if abs(other - own) <= EDGE_WITHIN else (other > own,)
+    heights [m]. Both ways where the two blocks are as far."""
+    return (False, True) if abs(below - above) <= EDGE_WITHIN else (below > above,)
 
 
-def _has_corner(block: AnyBlock, place: Array) -> bool:
-    """Whether a corner of a block is at a place."""
-    return bool(np.abs(block.corners - place).max(axis=1).min() < EDGE_WITHIN)
+def _have_corners(block: AnyBlock, spots: Sequence[Spot]) -> Flags:
+    """Which of some places have a corner of a block at them."""
+    places = np.array([spot.at for spot in spots])
+    return np.asarray(np.abs(block.corners - places[:, None]).max(axis=2).min(axis=1) < EDGE_WITHIN)
 
 
 def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[Spot]:
@@ -147,21 +154,17 @@ def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[Spo
         yield Spot(joint.middle + place * joint.along, k_n * joint.length * width, overhangs)
 
 
-def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -> Iterator[Spot]:
+def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -> list[Spot]:
     """The same of the points of a joint in space, which lie `flat` in its plane, and have the stiffness k [N/m]. Those
     at its corners may be of the block below alone, and those on an edge of the face below that lies within the face
     above are."""
     below, above = ((face - joint.outline[0]) @ joint.axes.T for face in faces)
-    of_below, of_above = (
-        (within(below, flat) < EDGE_WITHIN).tolist(),
-        (within(above[::-1], flat) < EDGE_WITHIN).tolist(),
-    )
+    on_below, on_above = within(below, flat) < EDGE_WITHIN, within(above[::-1], flat) < EDGE_WITHIN
     places = joint.outline[0] + flat @ joint.axes
-    for place, stiffness, on_below, on_above in zip(places, k, of_below, of_above, strict=True):
-        apart = np.abs(joint.outline - place).max(axis=1)
-        overhangs = on_below and not on_above
-        overhangs = overhangs or bool(apart.min() < 1e-9 and joint.corners[int(apart.argmin())])
-        yield Spot(place, stiffness, overhangs, on_below != on_above)
+    apart = np.abs(joint.outline - places[:, None]).max(axis=2)
+    at_corner = (apart.min(axis=1) < 1e-9) & np.array(joint.corners)[apart.argmin(axis=1)]
+    overhangs, on_one = (on_below & ~on_above) | at_corner, on_below != on_above
+    return [Spot(*spot) for spot in zip(places, k, overhangs.tolist(), on_one.tolist(), strict=True)]
 
 
 def rates(blocks: Sequence[AnyBlock], lines: Lines, directions: Array) -> csr_array:
@@ -231,6 +234,6 @@ def masses_of(blocks: Sequence[AnyBlock]) -> tuple[Array, csr_array | None]:
     """
     solids = [block for block in blocks if not isinstance(block, Polygon) and block.in_space and not block.fixed]
     if solids:
-        axes = csr_array(block_diag([coo_array(part) for block in solids for part in (np.eye(3), block.principal[1])]))
+        axes = block_diagonal(np.array([part for block in solids for part in (np.eye(3), block.principal[1])]))
         return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), axes
     return np.array([(block.mass, block.mass, block.inertia) for block in blocks if not block.fixed]).ravel(), None

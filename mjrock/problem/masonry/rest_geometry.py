@@ -61,14 +61,12 @@ class MasonryRestGeometry:
     def faces(self) -> tuple[tuple[Face, Face], ...]:
         """The whole faces that make each joint, of the blocks below and above."""
         sides = [block.sides for block in self.masonry.blocks]
-        pairs = []
-        for joint in self.masonry.joints:
-            below, above = sides[joint.below][joint.sides[0]], sides[joint.above][joint.sides[1]]
-            if isinstance(joint, SpaceJoint):
-                pairs.append((Face.in_space(below), Face.in_space(above)))
-            else:
-                pairs.append((_edge(below, joint, 1.0), _edge(above, joint, -1.0)))
-        return tuple(pairs)
+        below = [sides[joint.below][joint.sides[0]] for joint in self.masonry.joints]
+        above = [sides[joint.above][joint.sides[1]] for joint in self.masonry.joints]
+        if self.masonry.in_space:
+            return tuple(zip(Face.in_space(below), Face.in_space(above), strict=True))
+        edges = zip(self.masonry.plane_joints, below, above, strict=True)
+        return tuple((_edge(one, joint, 1.0), _edge(other, joint, -1.0)) for joint, one, other in edges)
 
 
 def _edge(side: Side, joint: Joint, sense: float) -> Face:

@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ...geometry.convex import cross_in_space, next_of
+from ...geometry.convex import cross_in_space
 from ...geometry.hull import Convex, Faces, Side
 from ...quantities import Array, Flags, Integers
 from .block import Block
@@ -119,10 +119,17 @@ class Face(NamedTuple):
         return cls(corners, sense * np.array([-along[1], along[0]]), np.array([-along, along]))
 
     @classmethod
-    def in_space(cls, side: Side) -> Face:
-        """A side of a block in space."""
-        ways = cross_in_space(next_of(side.corners) - side.corners, side.normal)
-        return cls(side.corners, side.normal, ways / np.linalg.norm(ways, axis=1)[:, None])
+    def in_space(cls, sides: Sequence[Side]) -> list[Face]:
+        """Sides of blocks in space, those of as many corners at once."""
+        faces, counts = dict[int, Face](), np.array([len(side.corners) for side in sides])
+        for count in np.unique(counts):
+            which = np.flatnonzero(counts == count).tolist()
+            corners, normals = (np.array([getattr(sides[i], name) for i in which]) for name in ("corners", "normal"))
+            ways = cross_in_space(np.roll(corners, -1, axis=1) - corners, normals[:, None])
+            ways /= np.linalg.norm(ways, axis=2)[..., None]
+            for i, own in zip(which, ways, strict=True):
+                faces[i] = cls(sides[i].corners, sides[i].normal, own)
+        return [faces[i] for i in range(len(sides))]
 
 
 class Meeting(Protocol):

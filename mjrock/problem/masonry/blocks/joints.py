@@ -195,9 +195,20 @@ class Edges(NamedTuple):
         """
         _, edge, other = each_with_each(self.first, self.number, pairs)
         behind = _dot(self.start[edge] - self.start[other], self.normal[edge])
-        deepest = np.maximum.reduceat(behind, np.flatnonzero(np.diff(edge, prepend=-1)))
-        counts = self.number[pairs[:, 0]]
-        return np.asarray(np.minimum.reduceat(deepest, np.cumsum(counts) - counts))
+        return least_of_deepest(behind, edge, self.number[pairs[:, 0]])
+
+
+def least_of_deepest(behind: Array, edge: Integers, counts: Integers) -> Array:
+    """The depth to which the second block of each pair reaches behind an edge or face of the first, the least over its
+    edges [m], shape (pairs,).
+
+    Args:
+        behind: depth of each corner of the second behind each edge of the first [m], those of an edge together.
+        edge: its number, of the same shape.
+        counts: of the edges of the first block of each pair, shape (pairs,).
+    """
+    deepest = np.maximum.reduceat(behind, np.flatnonzero(np.diff(edge, prepend=-1)))
+    return np.asarray(np.minimum.reduceat(deepest, np.cumsum(counts) - counts))
 
 
 class Meetings(NamedTuple):

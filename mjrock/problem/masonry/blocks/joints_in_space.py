@@ -4,21 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
 from ....geometry import convex
-from ....geometry.hull import Convex, Side
+from ....geometry.hull import SHAPES, Convex, Side
 from ....quantities import Array, Integers, frozen, short_repr
-from .joints import LEVEL, SHORTEST_JOINT, Shape, corner_within, names_of, neighbours, require_apart, unlike_named
+from .joints import (
+    LEVEL,
+    SHORTEST_JOINT,
+    TOGETHER,
+    Shape,
+    corner_within,
+    each_with_each,
+    least_of_deepest,
+    names_of,
+    neighbours,
+    numbered_parts,
+    require_apart,
+    unlike_named,
+)
 from .polyhedron import Vertices
 
 OPPOSITE = -1 + 1e-3
 """Largest cosine of the angle between the normals of two faces that make a joint [-]."""
 BLUNT = 1e-6
 """Share of a force across a normal below which it has no direction there [-]."""
+NEARBY = 1e-6
+"""By how much more than the gap and the tolerance faces may lie apart that are looked at closely, over these [-]."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +75,7 @@ class SpaceJoint:
     @cached_property
     def axes(self) -> Array:
         """Two unit vectors in the plane of the joint, right-handed with the normal, shape (2, 3)."""
-        return np.asarray(axes_across(self.normal[None])[0])
+        return _axes_of(self.direction)
 
     @cached_property
     def flat(self) -> Array:
@@ -69,12 +85,12 @@ class SpaceJoint:
     @cached_property
     def area(self) -> float:
         """Area of the joint [m2]."""
-        return convex.area(self.flat)
+        return _measures_of(self.flat.tobytes())[0]
 
     @cached_property
     def width(self) -> float:
         """The smallest extent of the joint in any direction of its plane [m]."""
-        return convex.width(self.flat)
+        return _measures_of(self.flat.tobytes())[1]
 
     @property
     def length(self) -> float:
@@ -84,7 +100,7 @@ class SpaceJoint:
     @cached_property
     def middle(self) -> Array:
         """Centroid of the area of the joint [m], shape (3,)."""
-        return np.asarray(self.outline[0] + convex.polygon_centroid(self.flat) @ self.axes)
+        return np.asarray(self.outline[0] + _measures_of(self.flat.tobytes())[2] @ self.axes)
 
     @property
     def frame(self) -> Array:
@@ -97,15 +113,81 @@ class SpaceJoint:
         return bool(np.abs(self.normal[:2]).max() < LEVEL)
 
 
-class Facing(NamedTuple):
-    """A side of a block that may face another one.
+class Faces(NamedTuple):
+    """Faces and corners of bodies, one body after the other.
 
-    Corners counterclockwise from outside [m], (n, 3), normal out of it, n.x on it, and two axes in its plane.
+    Args:
+        corners: [m], shape (corners, 3).
+        normals: out of the faces, shape (faces, 3).
+        first, number: where the faces of each of n bodies begin, and how many there are, and then the same of the
+            corners, shape (2 n,) each.
+        outlines: the corners of the faces, one face after the other [m], shape (places, 3).
+        begin, sizes: where those of each face begin, and how many there are, shape (faces,) each.
+        offsets: how far the faces lie along their normals, by the mean of their corners [m], shape (faces,).
     """
 
     corners: Array
-    normal: Array
-    offset: float
+    normals: Array
+    first: Integers
+    number: Integers
+    outlines: Array
+    begin: Integers
+    sizes: Integers
+    offsets: Array
+
+    @classmethod
+    def from_sides(cls, corners: Sequence[Array], sides: Sequence[Sequence[Side]]) -> Faces:
+        """Those of bodies with these corners and sides."""
+        every = list(chain.from_iterable(sides))
+        numbers = [np.array([len(each) for each in some]) for some in (sides, corners)]
+        normals, outlines = np.array([side.normal for side in every]), [side.corners for side in every]
+        count, first = np.array([len(ring) for ring in outlines]), [np.cumsum(each) - each for each in numbers]
+        begin, places = np.cumsum(count) - count, np.concatenate(outlines)
+        along = (places * np.repeat(normals, count, axis=0)).sum(axis=1)
+        offsets = np.add.reduceat(along, begin) / count
+        own = np.concatenate(first), np.concatenate(numbers)
+        return cls(np.concatenate(corners), normals, *own, places, begin, count, offsets)
+
+    def sunk(self, pairs: Integers) -> Array:
+        """How deep the second body of each pair reaches behind a face of the first [m], the least over its faces."""
+        of_corners = np.array([0, len(self.first) // 2])
+        _, face, corner = each_with_each(self.first, self.number, pairs + of_corners)
+        behind = self.offsets[face] - (self.normals[face] * self.corners[corner]).sum(axis=1)
+        return least_of_deepest(behind, face, self.number[pairs[:, 0]])
+
+    def facing(self, pairs: Integers, tolerance: float, gap: float) -> tuple[Integers, Integers, Integers]:
+        """Faces of pairs of bodies that look at each other and may touch within a tolerance and a gap [m].
+
+        The number of the pair, of the face of the first body and of that of the second, shape (n,) each.
+        """
+        pair, face, other = each_with_each(self.first, self.number, pairs)
+        looks = (self.normals[face] * self.normals[other]).sum(axis=1) <= OPPOSITE
+        pair, face, other = pair[looks], face[looks], other[looks]
+        count = self.sizes[other]
+        start = np.cumsum(count) - count
+        place = np.arange(count.sum()) + np.repeat(self.begin[other] - start, count)
+        heights = (self.outlines[place] * np.repeat(self.normals[face], count, axis=0)).sum(axis=1)
+        heights -= np.repeat(self.offsets[face], count)
+        if not len(heights):
+            return pair, face, other
+        low, high = np.minimum.reduceat(heights, start), np.maximum.reduceat(heights, start)
+        near = (low <= (1 + NEARBY) * gap) & (high >= -(1 + NEARBY) * tolerance)
+        return pair[near], face[near], other[near]
+
+
+class Looking(NamedTuple):
+    """Two sides of blocks that look at each other.
+
+    Args:
+        blocks: numbers of the two blocks.
+        sides: numbers of the sides among those of their block.
+        faces: the sides.
+        axes: two unit vectors in the plane of the first, shape (2, 3).
+    """
+
+    blocks: tuple[int, int]
+    sides: tuple[int, int]
+    faces: tuple[Side, Side]
     axes: Array
 
 
@@ -114,6 +196,19 @@ def axes_across(normals: Array) -> Array:
     first = convex.cross_in_space(np.eye(3)[np.abs(normals).argmin(axis=1)], normals)
     first /= np.linalg.norm(first, axis=1)[:, None]
     return np.asarray(np.stack([first, convex.cross_in_space(normals, first)], axis=1) + 0.0)
+
+
+@lru_cache(maxsize=SHAPES)
+def _measures_of(flat: bytes) -> tuple[float, float, Array]:
+    """Area [m2], width and centroid [m] of a polygon, from the bytes of an array of the shape (n, 2)."""
+    polygon = np.frombuffer(flat).reshape(-1, 2)
+    return convex.area(polygon), convex.width(polygon), frozen(convex.polygon_centroid(polygon))
+
+
+@lru_cache(maxsize=SHAPES)
+def _axes_of(direction: tuple[float, float, float]) -> Array:
+    """The same of one normal, shape (2, 3)."""
+    return frozen(axes_across(np.array([direction]))[0])
 
 
 def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
@@ -137,36 +232,32 @@ def joints_in_space(
     tolerance is the largest overlap of blocks [m]. The joint lies halfway between them. Two fixed blocks make none.
     Pairs are the numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
-    names = names_of(blocks)
-    faces = [facing(block.sides) for block in blocks]
-    normals = [np.array([face.normal for face in of_block]) for of_block in faces]
-    solids = [block.solids for block in blocks]
+    names, solids = names_of(blocks), [solid for block in blocks for solid in block.solids]
+    parts = Faces.from_sides([solid.corners for solid in solids], [solid.sides for solid in solids])
+    faces = Faces.from_sides([block.corners for block in blocks], [block.sides for block in blocks])
+    axes, (first, number) = axes_across(faces.normals), numbered_parts(blocks)
+    sides = [side for block in blocks for side in block.sides]
     joints: list[SpaceJoint] = []
     overlaps: list[tuple[float, int, int]] = []
-    for i, j in (neighbours(blocks, gap) if pairs is None else pairs).tolist():
-        deep = max(_depth(part, other, tolerance) for part in solids[i] for other in solids[j])
-        if deep < -gap:
-            continue
-        if deep > tolerance:
-            overlaps.append((deep, i, j))
-        for side, other in np.argwhere(normals[i] @ normals[j].T <= OPPOSITE).tolist():
-            facing_sides = faces[i][side], faces[j][other]
-            joints += _between(blocks, (i, j), facing_sides, (side, other), names, (tolerance, gap))
+    known: dict[tuple[bytes, bytes], Array] = {}
+    pairs = neighbours(blocks, gap) if pairs is None else pairs
+    for some in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)) if len(pairs) else ():
+        pair, one, other = each_with_each(first, number, some)
+        both = np.column_stack([one, other])
+        depth = np.minimum(parts.sunk(both), parts.sunk(both[:, ::-1]))
+        for i in np.flatnonzero(depth > tolerance).tolist():
+            depth[i] = min(depth[i], _depth_across_edges(solids[one[i]], solids[other[i]]))
+        deepest = np.maximum.reduceat(depth, np.flatnonzero(np.diff(pair, prepend=-1)))
+        deep, near = deepest > tolerance, some[deepest >= -gap]
+        overlaps += [(how, i, j) for how, (i, j) in zip(deepest[deep].tolist(), some[deep].tolist(), strict=True)]
+        pair, face, opposite = faces.facing(near, tolerance, gap)
+        own = np.column_stack([face, opposite]) - faces.first[near[pair]]
+        rows = zip(near[pair].tolist(), own.tolist(), face.tolist(), opposite.tolist(), strict=True)
+        for (i, j), (side, facing), k, m in rows:
+            looking = Looking((i, j), (side, facing), (sides[k], sides[m]), axes[k])
+            joints += _between(blocks, looking, names, (tolerance, gap), known)
     require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
-
-
-def facing(sides: Sequence[Side]) -> list[Facing]:
-    """The sides of a block with their axes."""
-    axes = axes_across(np.array([side.normal for side in sides]))
-    pairs = zip(sides, axes, strict=True)
-    return [Facing(side.corners, side.normal, float((side.corners @ side.normal).mean()), way) for side, way in pairs]
-
-
-def _depth(one: Convex, other: Convex, tolerance: float) -> float:
-    """How deep two convex parts lie inside each other [m], negative where they are apart."""
-    deep = min(one.depth(other.corners), other.depth(one.corners))
-    return min(deep, _depth_across_edges(one, other)) if deep > tolerance else deep
 
 
 def _depth_across_edges(block: Convex, neighbour: Convex) -> float:
@@ -187,40 +278,46 @@ def _depth_across_edges(block: Convex, neighbour: Convex) -> float:
 
 def _between(
     blocks: Sequence[Shape],
-    pair: tuple[int, int],
-    faces: tuple[Facing, Facing],
-    sides: tuple[int, int],
+    looking: Looking,
     names: Sequence[str],
     within: tuple[float, float],
+    known: dict[tuple[bytes, bytes], Array],
 ) -> Iterator[SpaceJoint]:
-    """The joint between two faces that look at each other, if they touch within a tolerance and a gap [m]."""
-    (face, other), (tolerance, gap) = faces, within
-    normal, origin, axes = face.normal, face.corners[0], face.axes
-    heights = other.corners @ normal - face.offset
-    if heights.min() > gap or heights.max() < -tolerance:
-        return
-    outline = convex.clipped((face.corners - origin) @ axes.T, ((other.corners - origin) @ axes.T)[::-1])
-    outline = convex.cleaned(outline, tolerance)
-    if not len(outline) or convex.width(outline) <= SHORTEST_JOINT * tolerance:
+    """The joint between two faces that look at each other, if they touch within a tolerance and a gap [m].
+
+    The outlines of joints are `known` of faces of the same shape that lie alike over each other.
+    """
+    (face, other), (tolerance, gap), axes, sides = looking.faces, within, looking.axes, looking.sides
+    normal, origin = face.normal, face.corners[0]
+    flat, window = (face.corners - origin) @ axes.T, (other.corners - origin) @ axes.T
+    shape = flat.tobytes(), window.tobytes()
+    if shape not in known:
+        outline = convex.cleaned(convex.clipped(flat, window[::-1]), tolerance)
+        narrow = not len(outline) or convex.width(outline) <= SHORTEST_JOINT * tolerance
+        known[shape] = outline[:0] if narrow else outline
+    outline = known[shape]
+    if not len(outline):
         return
     places = origin + outline @ axes
-    gaps = (other.offset - places @ other.normal) / float(normal @ other.normal)
+    offset = float((other.corners @ other.normal).mean())
+    gaps = (offset - places @ other.normal) / float(normal @ other.normal)
     if gaps.max() > gap or gaps.min() < -tolerance:
         return
     places = places + 0.5 * gaps[:, None] * normal  # counterclockwise about the normal out of the first block
-    (below, above), upwards = pair, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
+    (below, above), upwards = looking.blocks, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
     if blocks[above].fixed or (upwards < 0 and not blocks[below].fixed):
         below, above, normal, places, sides = above, below, -normal, places[::-1], sides[::-1]
-
-    def is_corner(block: Shape, place: Array) -> bool:
-        return bool(np.linalg.norm(block.corners - place, axis=1).min() < corner_within(tolerance, gap))
-
+    of_below, of_above = (
+        np.linalg.norm(blocks[i].corners - places[:, None], axis=2).min(axis=1) < corner_within(tolerance, gap)
+        for i in (below, above)
+    )
+    x, y, z = normal.tolist()
     yield SpaceJoint(
         below=below,
         above=above,
-        vertices=tuple((float(x), float(y), float(z)) for x, y, z in places),
-        direction=(float(normal[0]), float(normal[1]), float(normal[2])),
-        corners=tuple(is_corner(blocks[below], p) and not is_corner(blocks[above], p) for p in places),
+        vertices=tuple((x, y, z) for x, y, z in places.tolist()),
+        direction=(x, y, z),
+        corners=tuple((of_below & ~of_above).tolist()),
         name=f"{names[below]}|{names[above]}",
         sides=sides,
     )

@@ -143,12 +143,10 @@ class Polyhedron:
         """The convex parts that it is made of: itself."""
         return (self,)
 
-    @cached_property
+    @property
     def sides(self) -> tuple[Side, ...]:
         """Its faces."""
-        return tuple(
-            Side(self.corners[list(face)], normal) for face, normal in zip(self.faces, self.normals, strict=True)
-        )
+        return self.solids[0].sides
 
     @property
     def in_space(self) -> bool:
