@@ -76,7 +76,7 @@ def waited(name: str, whole: bool = False) -> list[object]:
     """A row of the table of large scenes: blocks, lines, step, what is timed, and how long the whole would take."""
     case, asked = long_case(name, whole)
     lines = len(setup_of(case, None, None).system.lines)
-    answer = mr.solve_explicit(case, output_step=0.01 if asked > 1 else 1e-3)
+    answer = mr.solve_explicit(case, output_step=0.01 if asked > 1 else 1e-3, threads=1)
     spent, stats = answer.stats["stepping_processor_time"], answer.stats
     setting_up = stats["processor_time"] - spent
     whole = setting_up + spent * asked / case.duration
@@ -89,7 +89,7 @@ def forces_kept(rounds: int) -> list[list[object]]:
     record = mr.GroundMotion.synthetic(1.0, 10.0, seed=1)
     joints: dict[str, Any] = {"k_n": K_SPACE, "k_s": K_SPACE}
     wall = functools.partial(mr.Masonry.running_bond, 4.0, 2.0, (0.4, 0.2), **joints)
-    explicit, engine = mr.solve_explicit, mr.simulate
+    explicit, engine = functools.partial(mr.solve_explicit, threads=1), mr.simulate
     runs = {
         "wall, explicit steps": (explicit, wall(), 2.0),
         "wall with mortar, explicit steps": (explicit, wall(bond=MORTAR, points=3), 2.0),

@@ -96,7 +96,7 @@ def built(scene: str, blocks: int) -> mr.Masonry:
 def run(masonry: mr.Masonry, duration: float) -> mr.Response:
     """A run of some duration [s]."""
     case = mr.MasonryCase(masonry, duration, mr.GroundMotion(np.full(2, PUSH), float(np.clip(duration, 1e-5, 1.0))))
-    return mr.solve_explicit(case, output_step=duration)
+    return mr.solve_explicit(case, output_step=duration, threads=1)
 
 
 def measured(scene: str, blocks: int, line_steps: float) -> Point:

@@ -86,7 +86,7 @@ class Point:
 def explicit(case: mr.MasonryCase, share: float) -> mr.Response:
     """Explicit steps of a share of the longest stable one, whole in a sample."""
     limit = mr.solve_explicit(case_of(case, 1e-2)).stats["stable_timestep"]
-    return mr.solve_explicit(case, timestep=SAMPLE / math.ceil(SAMPLE / (share * limit)), output_step=SAMPLE)
+    return mr.solve_explicit(case, timestep=SAMPLE / math.ceil(SAMPLE / (share * limit)), output_step=SAMPLE, threads=1)
 
 
 def case_of(case: mr.MasonryCase, duration: float) -> mr.MasonryCase:
@@ -143,7 +143,7 @@ def of_wall(study: Study, size: tuple[float, float], amplitude: float) -> list[P
         if k_s is None and len(wall.free) <= study.largest:
             points.append(point_of(fitted(case, 1e-3), case, strength))
         joints = "rigid" if k_s is None else "sprung"
-        points.append(point_of(mr.solve_explicit(case), case, f"{strength}, {joints}"))
+        points.append(point_of(mr.solve_explicit(case, threads=1), case, f"{strength}, {joints}"))
     return points
 
 
