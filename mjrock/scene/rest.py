@@ -72,6 +72,9 @@ SOFT_STARTS = 100.0, 0.01, 0.1
 the undeformed pose, in turn [-]: stiff springs slip more on the way, as of blocks beside a rough wall."""
 POSES = 300
 """Most poses of a search."""
+STALLED, PROGRESS = 40, 0.01
+"""Poses in a row with no less force missing than before, after which a search ends, and how much less that has to be,
+over it [-]. Searches that find a pose have up to some 15 such poses in a row."""
 MEMORY_OF_BLOCK, MEMORY_OF_LINE = {False: 30e3, True: 70e3}, {False: 4e3, True: 6e3}
 """Memory of set-up for each block and for each of its contact lines, in the plane and in space [bytes]. The factors of
 the stiffness in the search for the pose of rest take the most. `scripts/measure/setup_cost.py` measures it."""
@@ -243,6 +246,7 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
         UnsettledError: if there is none within the number of poses.
     """
     freedom, (loose, share, least, last) = potential.structure.places.freedom, BEGINNING
+    reached, at = np.inf, 0  # the least force that has been missing, and since which pose
     trial, pushed = tried(potential, search, potential.unmoved if start is None else start, start is None), False
     for poses in range(POSES):
         ending = trial if start is None and not poses else ended(potential, search, trial)
@@ -253,6 +257,9 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
             if not pushed or balances(potential, search, trial):
                 trial, pushed = tried(potential, search, let_go(potential, ending, way)), True
                 loose, share, least, last = BEGINNING
+                reached, at = np.inf, poses
+        if trial.left < (1 - PROGRESS) * reached:
+            reached, at = trial.left, poses
         if trial.left < last:
             loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
         else:
@@ -262,7 +269,7 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
         stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.grips, share)
         motion = solved(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
         trial = tried(potential, search, lowering(potential, trial.pose, motion, trial.sliders))
-        if loose > MOST_LOOSE or gone(potential, trial.pose):
+        if loose > MOST_LOOSE or poses - at >= STALLED or gone(potential, trial.pose):
             break
     raise UnsettledError(trial.pose.reshape(-1, freedom.nq))
 

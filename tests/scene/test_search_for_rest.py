@@ -7,10 +7,11 @@ import pytest
 from scenes import changed, two_blocks
 
 import mjrock as mr
-from mjrock.bars import Bar
+from mjrock.bars import Bar, progress_given_to
 from mjrock.geometry.poses import moved
 from mjrock.problem.wall.effect import LinkLaw
 from mjrock.scene import rest
+from mjrock.scene.masonry import standing_masonry
 from mjrock.scene.parts import ConstantForces, Links
 
 WEIGHT = 2000.0 * 0.6 * 2.1 * mr.GRAVITY
@@ -196,6 +197,22 @@ def test_bodies_fall_along_the_way_that_takes_the_most_energy():
     assert abs(far) > first
     assert energy(1.0) < energy(0.5) < energy(0.0)
     assert energy(1.0) < min(energy(0.98), energy(1.02)) or np.abs(far * way).max() >= rest.ROTATION_OF_FALLEN
+
+
+@pytest.mark.slow
+def test_a_search_that_makes_no_progress_ends_before_the_most_poses():
+    """Below the window a block stands on two others that slide apart: from stiff springs the search comes to a pose
+    where 2 mN are missing for good, and from soft ones it finds rest."""
+    opening = [(0.0, mr.Opening(1.0, 1.0, 1.0))]
+    wall, seen = mr.Masonry.facade(6.0, 3.0, 1.0, (0.5, 0.25), openings=opening, k_n=1e10, k_s=1e10), []
+    with progress_given_to(seen.append):
+        scene = standing_masonry(wall)
+        pose = scene.at_rest
+    assert len(seen) < 2 * rest.POSES
+    push = scene.potential.pushes(pose.ravel())[: len(scene.contacts.k)]
+    on_ground = scene.contacts.face_body < 0
+    weight = mr.GRAVITY * scene.bodies.mass.sum()
+    assert push[on_ground] @ scene.contacts.normal[on_ground, 2] == pytest.approx(weight, rel=1e-6)
 
 
 @pytest.mark.parametrize(("number", "stands"), [(20, True), (24, False)])
