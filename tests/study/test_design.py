@@ -170,3 +170,9 @@ def test_what_cannot_be_designed_is_refused(given, complaint):
         mr.design(*given)
     with pytest.raises(ValueError, match="method = 'best' is not one of linear, nonlinear, dynamic"):
         mr.design(tied, [1e4], SLV, method="best")
+
+
+def test_what_a_build_returns_is_named_where_it_is_no_mechanism():
+    motion = mr.GroundMotion.half_sine(3.0, 0.1)  # can be called, too
+    with pytest.raises(TypeError, match=r"^build\(0.4\) = array\(0.\).*is not a Case"):
+        mr.design(motion, [0.4], SLV)

@@ -257,7 +257,12 @@ def _checked(value: Any, built: Any, demand: Any, options: Mapping[str, Any]) ->
         return load_check(built, demand, **options)
     if demand is None:
         raise TypeError("demand is None, and build makes no check; give a demand")
-    return mechanism_check(built, demand, **options)
+    try:
+        return mechanism_check(built, demand, **options)
+    except TypeError as error:
+        if isinstance(built, Checked):
+            raise
+        raise TypeError(f"{name} = {brief(built)}: {error}") from error
 
 
 def label_of(value: object) -> str:
