@@ -202,8 +202,9 @@ EQUIVALENT = {
         f"limit_state.py: if turn % EVERY {which}:": "other turns are as good to start from as every third one"
         for which in ("!= EVERY - 1", "== EVERY - 2")
     },
-    "lines.py: beside = _outer(above, below, middle) if mirrored and abs(joint.normal[-1]) <= LEVEL and not "
-    "below.fixed else ()": "no joint leans by the bound to the last bit",
+    "lines.py: vertical = mirrored and abs(upwards[-1]) <= LEVEL and not below.fixed": (
+        "no joint leans by the bound to the last bit"
+    ),
     "ties.py: if broken <= math.inf:": "where nothing breaks, every sample is one before the break",
     **{
         "vaults.py: corners = [at for k, at in enumerate(corners) if not np.allclose(at, corners[k - 1], "
