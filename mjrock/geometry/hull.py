@@ -20,6 +20,8 @@ COPLANAR = 1e-5
 """Distance from the plane of a face up to which a vertex belongs to it, over the extent of the points [-]."""
 THINNEST = 1e-4
 """Smallest thickness of points that bound a body, over their extent [-]."""
+PARALLEL_EDGES = 1e-6
+"""Sine of the angle between two edges up to which they are parallel [-]."""
 SHAPES = 512
 """Latest shapes of bodies whose hull, volume and edges are kept: masonry has many blocks of few shapes [-]."""
 
@@ -247,6 +249,18 @@ def prism(outline: Array, length: float) -> tuple[Array, Faces]:
 def _sides(n: int) -> Faces:
     """Numbers of the corners of the faces between two polygons of n corners, one for each edge."""
     return tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
+
+
+def ways_across_edges(one: Convex, other: Convex) -> Array:
+    """Unit vectors across an edge of each of two bodies, but of edges that are parallel, shape (n, 3).
+
+    Beside the normals of their faces these are the directions in which convex bodies can be apart (Gottschalk,
+    Separating axis theorem, Technical Report TR96-024, UNC Chapel Hill, 1996).
+    """
+    across = cross_in_space(one.edges[:, None], other.edges[None]).reshape(-1, 3)
+    lengths = np.linalg.norm(across, axis=1)
+    apart = lengths > PARALLEL_EDGES
+    return np.asarray(across[apart] / lengths[apart, None])
 
 
 @lru_cache(maxsize=SHAPES)

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.hull import Convex
+from ...geometry.hull import Convex, ways_across_edges
 from ...quantities import Array, Integers, named
 from .blocks.compound import AnyBlock
 from .blocks.joints import SHORTEST_JOINT, Joint, neighbours
-from .blocks.joints_in_space import BLUNT, SpaceJoint
+from .blocks.joints_in_space import SpaceJoint
 from .files.bodies import LENGTH_UNITS
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 50.0, 2e-3
@@ -211,9 +211,7 @@ def along_lines(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint]
 
 def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
     """Where two convex bodies touch without a common face, empty where they do not."""
-    across = np.cross(one.edges[:, None], other.edges[None]).reshape(-1, 3)
-    lengths = np.linalg.norm(across, axis=1)
-    ways = np.concatenate([one.normals, other.normals, across[lengths > BLUNT] / lengths[lengths > BLUNT, None]])
+    ways = np.concatenate([one.normals, other.normals, ways_across_edges(one, other)])
     along, beside = one.corners @ ways.T, other.corners @ ways.T
     apart = np.maximum(beside.min(axis=0) - along.max(axis=0), along.min(axis=0) - beside.max(axis=0))
     if abs(apart.max()) > tolerance:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....geometry import convex
-from ....geometry.hull import SHAPES, Convex, Side
+from ....geometry.hull import SHAPES, Convex, Side, ways_across_edges
 from ....quantities import Array, Integers, frozen, short_repr
 from .joints import (
     LEVEL,
@@ -233,9 +233,12 @@ def joints_in_space(
     Pairs are the numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
     """
     names, solids = names_of(blocks), [solid for block in blocks for solid in block.solids]
-    parts = Faces.from_sides([solid.corners for solid in solids], [solid.sides for solid in solids])
+    first, number = numbered_parts(blocks)
     faces = Faces.from_sides([block.corners for block in blocks], [block.sides for block in blocks])
-    axes, (first, number) = axes_across(faces.normals), numbered_parts(blocks)
+    parts = faces
+    if number.max() > 1:
+        parts = Faces.from_sides([solid.corners for solid in solids], [solid.sides for solid in solids])
+    axes = axes_across(faces.normals)
     sides = [side for block in blocks for side in block.sides]
     joints: list[SpaceJoint] = []
     overlaps: list[tuple[float, int, int]] = []
@@ -261,14 +264,8 @@ def joints_in_space(
 
 
 def _depth_across_edges(block: Convex, neighbour: Convex) -> float:
-    """The least depth by which two blocks overlap along the products of an edge of each [m].
-
-    Beside the normals of their faces these are the directions in which convex bodies can be apart (Gottschalk,
-    Separating axis theorem, Technical Report TR96-024, UNC Chapel Hill, 1996).
-    """
-    across = convex.cross_in_space(block.edges[:, None], neighbour.edges[None]).reshape(-1, 3)
-    lengths = np.linalg.norm(across, axis=1)
-    across = across[lengths > 1e-6] / lengths[lengths > 1e-6, None]
+    """The least depth by which two blocks overlap across an edge of each, infinite where these are parallel [m]."""
+    across = ways_across_edges(block, neighbour)
     if not len(across):
         return np.inf
     along, beside = block.corners @ across.T, neighbour.corners @ across.T

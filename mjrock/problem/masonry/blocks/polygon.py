@@ -11,6 +11,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ....geometry.convex import next_of
 from ....geometry.hull import Convex, Side, prism
 from ....quantities import (
     Array,
@@ -92,7 +93,7 @@ class Polygon:
     @cached_property
     def normals(self) -> Array:
         """Unit normals out of the edges, each of which begins at the corner of the same number, shape (n, 2)."""
-        edges = np.roll(self.corners, -1, axis=0) - self.corners
+        edges = next_of(self.corners) - self.corners
         return frozen(np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, None])
 
     @property
@@ -103,7 +104,7 @@ class Polygon:
     @cached_property
     def sides(self) -> tuple[Side, ...]:
         """Its edges, in the order of `normals`."""
-        ends = np.stack([self.corners, np.roll(self.corners, -1, axis=0)], axis=1)
+        ends = np.stack([self.corners, next_of(self.corners)], axis=1)
         return tuple(Side(*edge) for edge in zip(ends, self.normals, strict=True))
 
     @property
@@ -159,7 +160,7 @@ class Polygon:
     def left_at(self, z: float) -> float:
         """The left end of the block at a height z [m], x [m]; at the end of its range where z lies beyond that."""
         ends = []
-        for (x0, z0), (x1, z1) in zip(self.corners, np.roll(self.corners, -1, axis=0), strict=True):
+        for (x0, z0), (x1, z1) in zip(self.corners, next_of(self.corners), strict=True):
             low, high = min(z0, z1), max(z0, z1)
             if low - 1e-9 <= z <= high + 1e-9:
                 share = 0.5 if z1 == z0 else min(max((z - z0) / (z1 - z0), 0.0), 1.0)
@@ -204,7 +205,7 @@ def require_near(points: Array) -> None:
 def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
     """Vertices as pairs of numbers, counterclockwise; a TypeError or ValueError names what is wrong with them."""
     corners = required_vertices(vertices, 3, 2)
-    edges = np.roll(corners, -1, axis=0) - corners
+    edges = next_of(corners) - corners
     lengths = np.hypot(*edges.T)
     extent = float(np.ptp(corners, axis=0).max())
     if not lengths.min() > max(1e-9 * extent, 1e-7):
@@ -232,13 +233,13 @@ def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
 def _triangles(corners: Array) -> tuple[Array, Array, Array]:
     """Corners and those that follow them, from the first one [m], and twice the areas of the triangles with it."""
     p = corners - corners[0]
-    q = np.roll(p, -1, axis=0)
+    q = next_of(p)
     return p, q, p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]
 
 
 def _require_no_crossing(p: Array) -> None:
     """Raise ValueError if two edges that are not neighbours cross."""
-    q, n = np.roll(p, -1, axis=0), len(p)
+    q, n = next_of(p), len(p)
 
     def side(a: Array, b: Array, c: Array) -> float:
         return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
