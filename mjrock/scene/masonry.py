@@ -55,8 +55,10 @@ def masonry_scene(case: MasonryCase) -> Scene:
     return standing_masonry(case.masonry, case.passive)
 
 
+@lru_cache(maxsize=16)
 def require_memory(masonry: Masonry) -> None:
-    """Raise a ValueError if the machine has less memory than set-up takes, before that takes it."""
+    """Raise a ValueError if the machine has less memory than set-up takes, before that takes it: once for each masonry,
+    since later runs of it find its set-up done."""
     blocks, lines = len(masonry.free), len(masonry.lines.k)
     needed, available = memory_of(blocks, lines, in_space=masonry.in_space), memory()
     if needed > available:

@@ -15,9 +15,17 @@ COLUMN = mr.Masonry.column(width=0.5, height=2.0, drums=4)
 @pytest.mark.parametrize("solve", [mr.simulate, mr.solve_explicit])
 def test_what_does_not_fit_is_refused_with_both_figures(solve, settled, monkeypatch):
     monkeypatch.setattr(scene, "memory", lambda: 2000.0)
+    scene.require_memory.cache_clear()
     named = r"blocks = 4 on 16 contact lines need about 0.000\d+ GB of memory, and the machine has 2e-06 GB available"
     with pytest.raises(ValueError, match=named):
         solve(mr.MasonryCase(COLUMN, 0.01, settled=settled))
+
+
+def test_a_later_run_of_the_same_masonry_needs_no_memory_anew(monkeypatch):
+    case = mr.MasonryCase(COLUMN, 0.01)
+    first = mr.solve_explicit(case)
+    monkeypatch.setattr(scene, "memory", lambda: 2000.0)
+    assert (mr.solve_explicit(case).pose == first.pose).all()
 
 
 def test_the_estimate_grows_with_blocks_and_lines():
