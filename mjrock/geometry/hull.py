@@ -20,8 +20,8 @@ COPLANAR = 1e-5
 """Distance from the plane of a face up to which a vertex belongs to it, over the extent of the points [-]."""
 THINNEST = 1e-4
 """Smallest thickness of points that bound a body, over their extent [-]."""
-PARALLEL_EDGES = 1e-6
-"""Sine of the angle between two edges up to which they are parallel [-]."""
+UNCROSSED = 1e-6
+"""Sine of the angle between two edges up to which nothing is across both [-]."""
 SHAPES = 512
 """Latest shapes of bodies whose hull, volume and edges are kept: masonry has many blocks of few shapes [-]."""
 
@@ -259,7 +259,7 @@ def ways_across_edges(one: Convex, other: Convex) -> Array:
     """
     across = cross_in_space(one.edges[:, None], other.edges[None]).reshape(-1, 3)
     lengths = np.linalg.norm(across, axis=1)
-    apart = lengths > PARALLEL_EDGES
+    apart = lengths > UNCROSSED
     return np.asarray(across[apart] / lengths[apart, None])
 
 
