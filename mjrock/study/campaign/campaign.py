@@ -24,14 +24,14 @@ from ...quantities import is_iterable, require_flag, require_path, require_real,
 from .pool import CHUNK_SECONDS, QUIT, Workers
 from .progress import CampaignProgress
 from .store import Store
-from .task import RefusedTask, Row, Task, carry_out, carry_out_all, column_names, failed_row, keyed, programs
+from .task import RefusedTask, Row, Task, carry_out_all, column_names, failed_row, keyed, programs
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
 DEATHS = 2
 """A task during which this many worker processes have died is run alone."""
 LOOK_EVERY = 0.1
-"""Time between two looks for the row of a task that runs in this process [s]."""
+"""Time between two looks for the rows of tasks that run in this process [s]."""
 GUARD = (
     "the worker processes die as they start: they import the script that calls the campaign; let it do so "
     'below `if __name__ == "__main__":`; or give workers=1 without a time limit'
@@ -108,13 +108,15 @@ def campaign(
         folder.mkdir(parents=True, exist_ok=True)
     total = len(tasks) if isinstance(tasks, Sequence) else None
     with Store(path, writing=True) as file, CampaignProgress(file.path, len(file), total) as progress:
+        keyed_tasks: Iterable[tuple[str, Task]] = map(keyed, tasks)
         if isinstance(tasks, list | tuple):
-            for names in dict.fromkeys(column_names(keyed(task)[1]) for task in tasks):
+            keyed_tasks = list(keyed_tasks)
+            for names in dict.fromkeys(column_names(task) for _, task in keyed_tasks):
                 file.add_columns(names)
         run = Runner(file, progress, folder, retry=retry, limit=limit)
         try:
             with collect_warnings(progress.warned.add):
-                _carry_out(run, tasks, executor, count)
+                _carry_out(run, run.pending(keyed_tasks), executor, count)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{file.path}: {len(file)} rows are kept, and the same call carries on from there"
@@ -143,12 +145,11 @@ def required_tasks(tasks: object) -> Iterable[Task]:
     return cast(Iterable[Task], tasks)
 
 
-def _carry_out(run: Runner, tasks: Iterable[Task], executor: Executor | None, count: int) -> None:
-    """Run the tasks where they are to run."""
-    pending = run.pending(tasks)
+def _carry_out(run: Runner, pending: Iterator[Job], executor: Executor | None, count: int) -> None:
+    """Run the jobs where they are to run."""
     if executor is None and run.limit is None and count == 1:
-        for job in pending:
-            run.here(job)
+        while jobs := list(islice(pending, run.chunk())):
+            run.here(jobs)
         return
     try:
         if executor is not None:
@@ -213,15 +214,14 @@ class Runner:
         self.seconds = 0.0
         self.seen = 0
 
-    def pending(self, tasks: Iterable[Task]) -> Iterator[Job]:
+    def pending(self, keyed_tasks: Iterable[tuple[str, Task]]) -> Iterator[Job]:
         """The tasks that have no row yet, each once. One that cannot be run gets its row here."""
         statuses = self.file.statuses()
         partial = self._partial_histories()
         columns: tuple[str, ...] = ()
         labels: dict[str, dict[str, object]] = {}
-        for position, given in enumerate(tasks):
+        for position, (key, task) in enumerate(keyed_tasks):
             self.seen += 1
-            key, task = keyed(given)
             if (first := labels.setdefault(key, dict(task.labels))) != task.labels:
                 same = f"the case labelled {dict(task.labels)} is that labelled {first}"
                 self.progress.warned.add(f"{same}, whose row stands for both: they differ in labels alone", "same")
@@ -264,16 +264,17 @@ class Runner:
         self.seconds += sum(row["seconds"] for row in rows)
         self.progress.add(rows)
 
-    def here(self, job: Job) -> None:
-        """Run a job in a thread of this process.
+    def here(self, jobs: Sequence[Job]) -> None:
+        """Run a chunk of jobs in a thread of this process.
 
-        The main thread waits for the row, so that Ctrl-C reaches it also while compiled code runs.
+        The main thread waits for the rows, so that Ctrl-C reaches it also while compiled code runs.
         """
-        rows: SimpleQueue[Row] = SimpleQueue()
-        Thread(target=lambda: rows.put(carry_out(job.task, job.history)), daemon=True).start()
+        finished: SimpleQueue[list[Row]] = SimpleQueue()
+        tasks = [(job.task, job.history) for job in jobs]
+        Thread(target=lambda: finished.put(carry_out_all(tasks)), daemon=True).start()
         while True:
             with contextlib.suppress(Empty):
-                return self.write([job], [rows.get(timeout=LOOK_EVERY)])
+                return self.write(jobs, finished.get(timeout=LOOK_EVERY))
 
     def across(self, pending: Iterator[Job], width: int, submit: Submit) -> None:
         """Run jobs in other processes, with twice as many chunks in flight as there are processes.

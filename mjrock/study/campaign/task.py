@@ -62,9 +62,9 @@ def fingerprint(*contents: object) -> str:
     Raises:
         TypeError: for a value whose content is not known, such as a function.
     """
-    digest = hashlib.sha256()
-    _hand_on(contents, lambda piece: digest.update(b"%d:" % len(piece) + piece))
-    return digest.hexdigest()[:32]
+    pieces: list[bytes] = []
+    _hand_on(contents, pieces.append)
+    return hashlib.sha256(b"".join(b"%d:" % len(piece) + piece for piece in pieces)).hexdigest()[:32]
 
 
 def _hand_on(value: object, add: Callable[[bytes], None]) -> None:
@@ -177,9 +177,9 @@ def column_names(task: Task) -> tuple[str, ...]:
     A label may have the name of a column whose value it repeats, such as `solver`; it counts once. Any other two names
     that are the same clash, and stay in the answer: `Store.add_columns` refuses them.
     """
-    labels = task.labels
-    repeated = {n for n in labels if n in task.COLUMNS and getattr(task, n, None) == labels[n]}
-    return (*labels, *(name for name in task.COLUMNS if name not in repeated))
+    labels, columns = task.labels, task.COLUMNS
+    repeated = {n for n in labels if n in columns and getattr(task, n, None) == labels[n]}
+    return (*labels, *(name for name in columns if name not in repeated))
 
 
 def carry_out(task: Task, history: Path | None) -> Row:
