@@ -148,9 +148,9 @@ def timed(studied: Mapping[str, Facade], motions: Pair, pga: float, rounds: int)
     for _ in tqdm(range(rounds), desc="rounds", disable=None, leave=False):
         spent = {}
         for name, facade in asked.items():
-            begun = time.perf_counter()
+            begun = time.process_time()
             found = solved(facade, motions, pga)
-            spent[name] = (time.perf_counter() - begun) / found.t[-1], found.stats["steps"] / found.t[-1]
+            spent[name] = (time.process_time() - begun) / found.t[-1], found.stats["steps"] / found.t[-1]
         for name, (seconds, steps) in spent.items():
             ratios.setdefault(name, []).append((seconds / spent["bare"][0], steps / spent["bare"][1]))
     return {name: (statistics.median(a), statistics.median(b)) for name, (a, b) in _turned(ratios).items()}

@@ -1,11 +1,13 @@
-"""What a step, a start and a first run cost, before and now, beside plain C of the same law.
+"""What a step, a start and a first run cost, before and now, by number of threads and beside plain C of the same law.
 
-Nanoseconds of the processor for a contact line of the plane or a point of space and step: walls in running bond and
-façades, whose ground accelerates at once, with sprung and with rigid friction. The earlier version is taken from the
-repository's history and runs in a process of its own, in turn with this one. Then set-up, rocking theory, first runs
-with an empty store, what large scenes take, and what it costs to keep the forces of joints. Prints the tables, and
-digests of the answers of this version, and writes step_cost.txt and .csv, step_cost_starts.txt,
-step_cost_waits.txt and step_cost_forces.txt, each as soon as it is measured.
+Nanoseconds for a contact line of the plane or a point of space and step: walls in running bond, dry and with mortar,
+and façades, whose ground accelerates at once, with sprung and with rigid friction. The earlier version is taken from
+the repository's history and runs in a process of its own, in turn with this one and its numbers of threads. The fastest
+of the turns counts, as other work on the machine only makes steps slower. All poses are checked to be equal to the last
+bit for any number of threads. Then set-up, rocking theory, first runs with an empty store, what large scenes take, and
+what it costs to keep the forces of joints. Prints the tables, with bytes of the row of a line and digests of the
+answers, and writes step_cost.txt, .csv and .png, step_cost_starts.txt, step_cost_waits.txt and step_cost_forces.txt,
+each as soon as it is measured.
 """
 
 from __future__ import annotations
@@ -18,17 +20,22 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from tqdm import tqdm
 
 import mjrock as mr
+from mjrock import plotting
 from mjrock.distinct.setup import setup_of
+from mjrock.machine import cores
 from scripts.measure import speed
 from scripts.measure.steps import floor as step_floor
-from scripts.measure.steps.tasks import K_SPACE, PUSH, STEPS, THEORY, case_of, stepped
+from scripts.measure.steps.tasks import K_SPACE, MORTAR, PUSH, STEPS, STEPS_BEFORE, THEORY, case_of, stepped
+from scripts.measure.steps.turns import Turns
 from scripts.shared import cli
 from scripts.studies import shear_wall
 
@@ -36,12 +43,14 @@ BEFORE = "5c5a262"
 """The version that was measured when the cost of a step was first looked into."""
 TASKS = str(Path(__file__).parent / "steps" / "tasks.py")
 LINE_STEPS = 5e7
-"""Steps times lines that are timed: a second or two, some ten with rigid friction in space."""
+"""Steps times lines of one turn of the earlier version and of plain C: a second or two."""
+BATCHES, BATCH = 8, 0.02
+"""How often each number of threads makes steps in a turn, and for how long [s]."""
 SET_UPS = (1000, 2000, 4000)
 SETTLED_IN = 50
 """Blocks of a set-up that warms up."""
-MORTAR = mr.BONDS["cement mortar, wall J4D"]
-HEADER = ["scene", "lines", "digest", "before [ns]", "now [ns]", "C, one loop [ns]", "C, vectors [ns]"]
+PANELS = {"walls, dry": "wall sprung", "walls, mortar": "wall mortar", "façades, dry": "facade sprung"}
+"""What the picture shows: the titles of its panels, and the kind and friction of their scenes."""
 
 
 @functools.cache
@@ -50,7 +59,7 @@ def long_case(name: str, whole: bool = False) -> tuple[mr.MasonryCase, float]:
     record = mr.GroundMotion.synthetic(3.0, 10.0, seed=1)
     if name.startswith("1,000 units"):
         k_s = None if "rigid" in name else K_SPACE
-        bond = MORTAR if "mortar" in name else None
+        bond = mr.BONDS[MORTAR] if "mortar" in name else None
         points = 3 if bond else 2
         masonry = mr.Masonry.running_bond(15.0, 8.0, (0.5, 0.25), k_n=K_SPACE, k_s=k_s, bond=bond, points=points)
         return mr.MasonryCase(masonry, 10.0 if whole else 0.5, motion=record), 10.0
@@ -92,7 +101,7 @@ def forces_kept(rounds: int) -> list[list[object]]:
     explicit, engine = functools.partial(mr.solve_explicit, threads=1), mr.simulate
     runs = {
         "wall, explicit steps": (explicit, wall(), 2.0),
-        "wall with mortar, explicit steps": (explicit, wall(bond=MORTAR, points=3), 2.0),
+        "wall with mortar, explicit steps": (explicit, wall(bond=mr.BONDS[MORTAR], points=3), 2.0),
         "façade in space, explicit steps": (explicit, mr.Masonry.facade(3.2, 1.6, 1.2, (0.4, 0.2), **joints), 1.0),
         "wall, MuJoCo": (engine, mr.Masonry.running_bond(1.6, 0.8, (0.4, 0.2), k_n=1e8), 1.0),
         "façade in space, MuJoCo": (engine, mr.Masonry.facade(1.6, 0.8, 0.8, (0.4, 0.2), k_n=1e8), 0.5),
@@ -110,24 +119,18 @@ def forces_kept(rounds: int) -> list[list[object]]:
     return rows
 
 
-def floors(folder: Path, names: Sequence[str], rounds: int) -> dict[str, list[float]]:
-    """Nanoseconds a line and step of plain C, one loop and vectors, of the sprung walls."""
-    found = {}
-    for name in names:
-        if not name.startswith("wall") or name.endswith("rigid") or not step_floor.is_there():
-            continue
-        setup = setup_of(case_of(name, 1.0), None, None)
-        h, lines = 0.4 * setup.step_length.limit, len(setup.system.lines)
-        count = int(LINE_STEPS / lines)
-        taken = [
-            [
-                step_floor.Floor(setup.system, folder).nanoseconds(h, PUSH[2], count, vectors=vectors)
-                for _ in range(rounds)
-            ]
-            for vectors in (False, True)
-        ]
-        found[name] = [statistics.median(times) for times in taken]
-    return found
+def plain_c(folder: Path, name: str, rounds: int) -> list[float]:
+    """Nanoseconds a line and step of plain C, one loop and vectors; none but of walls with sprung joints."""
+    if not (name.startswith("wall") and name.endswith("sprung") and step_floor.is_there()):
+        return []
+    setup = setup_of(case_of(name, 1.0), None, None)
+    h, lines = 0.4 * setup.step_length.limit, len(setup.system.lines)
+    count = int(LINE_STEPS / lines)
+    floor = step_floor.Floor
+    return [
+        min(floor(setup.system, folder).nanoseconds(h, PUSH[2], count, vectors=vectors) for _ in range(rounds))
+        for vectors in (False, True)
+    ]
 
 
 def digest(name: str, steps: int) -> str:
@@ -156,13 +159,11 @@ def main(argv: Sequence[str] | None = None) -> None:
         cli.report(cli.folder(args.out) / "step_cost_whole", cli.table(WAITED, rows))
         return
     out, rounds = cli.folder(args.out), 1 if args.quick else args.rounds
-    names = STEPS[:1] if args.quick else STEPS
     with tempfile.TemporaryDirectory() as folder:
         there = speed.ROOT if args.quick else speed.unpacked(args.before, Path(folder))
         versions = speed.Version(there, TASKS), speed.Version(speed.ROOT, TASKS)
         try:
-            text, rows = step_table(versions, floors(Path(folder), names, rounds), names, rounds)
-            cli.report(out / "step_cost", text, HEADER, rows)
+            steps_measured(out, versions, Path(folder), rounds, quick=args.quick)
             if args.quick or args.steps_only:
                 return
             starts = start_table(versions, rounds, Path(folder))
@@ -176,19 +177,104 @@ def main(argv: Sequence[str] | None = None) -> None:
     cli.report(out / "step_cost_forces", cli.table(header, forces_kept(rounds)))
 
 
-def step_table(
-    versions: Sequence[speed.Version], floor: dict[str, list[float]], names: Sequence[str], rounds: int
-) -> tuple[str, list[list[object]]]:
-    """Nanoseconds a line and step of scenes, as a table and as rows."""
-    rows: list[list[object]] = []
-    for name in tqdm(names, desc="steps", disable=None, leave=False):
-        lines = len(setup_of(case_of(name, 1.0), None, None).system.lines)
-        count = max(10, int(LINE_STEPS / lines / (1 if len(names) > 1 else 250)))
-        compared(versions, name, 10, 1)
-        taken = [f"{seconds / lines * 1e9:.1f}" for seconds in compared(versions, name, count, rounds)]
-        plain = [f"{value:.1f}" for value in floor.get(name, [])] or ["", ""]
-        rows.append([name, lines, digest(name, 200), *taken, *plain])
-    return cli.table(HEADER, rows), rows
+@dataclass(frozen=True)
+class StepCost:
+    """What a step of a scene costs: nanoseconds a line and step, of this version for each number of threads."""
+
+    scene: str
+    lines: int
+    bytes_of_line: int
+    digest: str
+    before: float | None
+    by_threads: dict[int, float]
+    plain_c: list[float]
+
+    def row(self, numbers: Sequence[int]) -> list[object]:
+        """The row of the table."""
+        now = [self.by_threads.get(threads) for threads in numbers]
+        times = ["" if value is None else f"{value:.1f}" for value in (self.before, *now)]
+        times += [f"{value:.1f}" for value in self.plain_c] or ["", ""]
+        gain = "" if now[-1] is None else f"{self.by_threads[1] / now[-1]:.2f}"
+        return [self.scene, self.lines, self.bytes_of_line, self.digest, *times, gain]
+
+
+def step_cost(
+    name: str, before: speed.Version, numbers: Sequence[int], rounds: int, folder: Path, line_steps: float
+) -> StepCost:
+    """What a step of a scene costs, by the earlier version, some numbers of threads and plain C.
+
+    Raises:
+        RuntimeError: if the poses of two numbers of threads differ.
+    """
+    case = case_of(name, 1.0)
+    turns = {threads: Turns(case, threads) for threads in (numbers[:1] if name.endswith("rigid") else numbers)}
+    rows = turns[1].system.lines
+    lines, batch = len(rows), max(5, int(BATCH / (3e-8 * len(rows))))
+    earlier: list[float] = []
+    by_threads: dict[int, list[float]] = {threads: [] for threads in turns}
+    for _ in range(rounds):
+        if name in STEPS_BEFORE:
+            earlier.append(before.seconds(name, max(10, int(line_steps / lines))) / lines * 1e9)
+        for _ in range(BATCHES):
+            for threads, turn in turns.items():
+                by_threads[threads].append(turn.seconds(batch) / lines * 1e9)
+    for threads, turn in turns.items():
+        turn.pool.__exit__(None, None, None)
+        if not (turn.place == turns[1].place).all():
+            raise RuntimeError(f"{name}: {threads} threads have other bits than one")
+    best = {threads: min(taken) for threads, taken in by_threads.items()}
+    c = plain_c(folder, name, rounds)
+    return StepCost(name, lines, rows.dtype.itemsize, digest(name, 200), min(earlier, default=None), best, c)
+
+
+def figure_of(costs: Sequence[StepCost], numbers: Sequence[int]) -> Figure:
+    """Time of a step against the number of lines: a curve for each number of threads, the earlier version, plain C."""
+    figure = Figure(figsize=(7.4, 3.2), layout="constrained")
+    axes = figure.subplots(1, len(PANELS), sharex=True, sharey=True)
+    for ax, (title, kind) in zip(axes, PANELS.items(), strict=True):
+        shown = [cost for cost in costs if [cost.scene.split()[i] for i in (0, 2)] == kind.split()]
+        curves = {
+            ("1 thread" if threads == 1 else f"{threads} threads"): [cost.by_threads[threads] for cost in shown]
+            for threads in numbers
+        }
+        curves |= {
+            "one thread, earlier version": [cost.before or np.nan for cost in shown],
+            "plain C, one loop": [cost.plain_c[0] if cost.plain_c else np.nan for cost in shown],
+        }
+        lines = np.array([cost.lines for cost in shown])
+        for i, (label, taken) in enumerate(curves.items()):
+            now = i < len(numbers)
+            style: dict[str, Any] = {"color": plotting.PALETTE[i % len(plotting.PALETTE)]} if now else {"color": "0.5"}
+            style["ls"] = "-" if now else ("--", ":")[i - len(numbers)]
+            ax.loglog(lines, lines * np.array(taken) * 1e-3, "o", ms=3, lw=1.2, label=label, **style)
+        ax.set_title(title, fontsize=9)
+        ax.set_xlabel("contact lines [-]")
+        ax.grid(alpha=0.3)
+    axes[0].set_ylabel("time of a step [µs]")
+    axes[0].legend(frameon=False, fontsize=7)
+    return figure
+
+
+def numbers_of_threads(quick: bool) -> list[int]:
+    """1, 2, 4 and so on, up to the cores of this process."""
+    most = 2 if quick else max(2, cores())
+    return [2**i for i in range(most.bit_length()) if 2**i <= most]
+
+
+def steps_measured(out: Path, versions: Sequence[speed.Version], folder: Path, rounds: int, *, quick: bool) -> None:
+    """Measure the steps, and write table and picture."""
+    numbers, names = numbers_of_threads(quick), STEPS[:1] if quick else STEPS
+    line_steps = LINE_STEPS / (250 if quick else 1)
+    costs = [
+        step_cost(name, versions[0], numbers, rounds, folder, line_steps)
+        for name in tqdm(names, desc="steps", disable=None, leave=False)
+    ]
+    threads = [f"{number} thread{'s' * (number > 1)} [ns]" for number in numbers]
+    header = ["scene", "lines", "bytes of a line", "digest", "before [ns]", *threads]
+    header += ["C, one loop [ns]", "C, vectors [ns]", f"1 over {numbers[-1]} threads"]
+    rows = [cost.row(numbers) for cost in costs]
+    cli.report(out / "step_cost", cli.table(header, rows), header, rows)
+    plotting.save(figure_of(costs, numbers), out / "step_cost.png")
 
 
 def start_table(versions: Sequence[speed.Version], rounds: int, folder: Path) -> str:

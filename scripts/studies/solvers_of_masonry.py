@@ -22,9 +22,9 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.plotting.style import legend_below
 from scripts.measure.masonry_precision import PULSE, SAMPLE, Motion, column, motion_of
 from scripts.shared import cli
-from scripts.shared.labels import beside
 
 UNIT = (0.4, 0.2)
 """Size of a unit in running bond [m]."""
@@ -34,8 +34,6 @@ WEAK, STRONG, PERIOD = 3.0, 9.0, 0.3
 """Amplitudes [m/s2] and period [s] of the sine that shakes it."""
 WORDS = {"weak": f"{WEAK:g} m/s²", "strong": f"{STRONG:g} m/s²", "rigid": "joints stick", "sprung": "$k_s = 0.4\\,k_n$"}
 """Settings in the figure."""
-RAISED = {"weak, rigid": 3, "weak, sprung": 2, "strong, sprung": -3}
-"""How far the label of a curve stands above its end [pt]."""
 
 
 @dataclass(frozen=True)
@@ -158,11 +156,10 @@ def drawn(walls: Sequence[Point]) -> Figure:
             dashes = "-" if setting.startswith("strong") else ":"
             marker = "s" if "sprung" in setting else "o"
             style = {"color": look["color"], "marker": marker, "linestyle": dashes, "markerfacecolor": "none"}
-            ax.plot([one.blocks for one in own], [one.seconds for one in own], **style)
             label = ", ".join([str(look["label"]), *(WORDS[word] for word in setting.split(", "))])
-            end = own[-1].blocks, own[-1].seconds
-            beside(ax, end, label, look["color"], (10, RAISED.get(setting, 0)))
-    ax.set(xscale="log", yscale="log", xlim=(None, 1.04 * max(one.blocks for one in walls)))
+            ax.plot([one.blocks for one in own], [one.seconds for one in own], label=label, **style)
+    ax.set(xscale="log", yscale="log")
+    legend_below(figure, *ax.get_legend_handles_labels(), 2)
     ax.set_xlabel("blocks that are free [-]")
     ax.set_ylabel("CPU time of a simulated second [s/s]")
     return figure

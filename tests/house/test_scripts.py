@@ -130,8 +130,7 @@ WRITES = {
     "first_pictures": {"effects.png", "tutorial.png", "record.png", "design.png"},
     "speed": {"speed.txt"},
     "setup_cost": {"setup_cost.csv", "setup_cost.txt"},
-    "step_cost": {"step_cost.csv", "step_cost.txt"},
-    "step_threads": {f"step_threads.{ending}" for ending in ("png", "csv", "txt")},
+    "step_cost": {f"step_cost.{ending}" for ending in ("png", "csv", "txt")},
     "thresholds": {"thresholds.txt"},
     "damping_figures": {"damping_corners.png", "damping_figures.sqlite", "damping_figures.txt"},
     "calibrate": {"calibrated.toml", "calibrated_residuals_base.png"}
@@ -249,7 +248,6 @@ def main_of(name):
 LONG = {
     "speed",
     "step_cost",
-    "step_threads",
     "thresholds",
     "throughput",
     "calibrate",
@@ -261,7 +259,6 @@ LONG = {
 } | {
     "sensitivity",
     "step_cost",
-    "step_threads",
     "capacity_bands",
     "low_stop",
     "limit_analysis",

@@ -22,6 +22,8 @@ K_N, K_SPACE = 1e10, 1e9
 PUSH = {2: 5.0, 3: 0.5}
 """Acceleration of the ground by dimension [m/s2]."""
 WALLS, FACADES = (50, 200, 1000), ((2.0, 1.0, 0.5, (0.5, 0.25)), (4.0, 2.0, 1.0, (0.5, 0.25)))
+LARGE_WALL, LARGE_FACADE = 3873, (10.0, 6.0, 1.0, (0.5, 0.25))
+MORTAR = "cement mortar, wall J4D"
 THEORY = ("one-sided, 3 s, rocking theory", "two-sided, 6 s, rocking theory", "10 s record, rocking theory")
 
 
@@ -29,19 +31,33 @@ THEORY = ("one-sided, 3 s, rocking theory", "two-sided, 6 s, rocking theory", "1
 def masonry(name: str) -> mr.Masonry:
     """A wall of so many blocks in running bond, or a façade."""
     kind, number, friction = name.split()
+    k_n = K_N if kind == "wall" else K_SPACE
+    joints: dict[str, Any] = {"k_n": k_n, "k_s": None if friction == "rigid" else k_n}
+    if friction == "mortar":
+        joints |= {"bond": mr.BONDS[MORTAR], "points": 3}
     if kind == "wall":
         columns = max(1, round(math.sqrt(int(number))))
         size = max(1, round(int(number) / columns)) * 0.4, columns * 0.2
-        return mr.Masonry.running_bond(*size, (0.4, 0.2), k_n=K_N, k_s=K_N if friction == "sprung" else None)
-    return mr.Masonry.facade(*FACADES[int(number)], k_n=K_SPACE, k_s=K_SPACE if friction == "sprung" else None)
+        return mr.Masonry.running_bond(*size, (0.4, 0.2), **joints)
+    return mr.Masonry.facade(*(*FACADES, LARGE_FACADE)[int(number)], **joints)
 
 
-STEPS = tuple(
+STEPS_BEFORE = tuple(
     f"{kind} {number} {friction}"
     for friction in ("sprung", "rigid")
     for kind, numbers in (("wall", WALLS), ("facade", range(len(FACADES))))
     for number in numbers
 )
+"""Scenes of every version."""
+STEPS = (
+    *STEPS_BEFORE[: len(WALLS)],
+    f"wall {LARGE_WALL} sprung",
+    *(f"wall {number} mortar" for number in WALLS),
+    *STEPS_BEFORE[len(WALLS) : len(WALLS) + len(FACADES)],
+    f"facade {len(FACADES)} sprung",
+    *STEPS_BEFORE[len(WALLS) + len(FACADES) :],
+)
+"""Scenes of this version, which has mortar and larger masonry."""
 
 
 def case_of(name: str, duration: float) -> mr.MasonryCase:
