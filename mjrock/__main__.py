@@ -73,7 +73,11 @@ def leave_output() -> None:
 
 
 def write(text: str) -> None:
-    """Write to the standard output; OSError if it is full, and nothing if nobody reads on, as of `| head`."""
+    """Write to the standard output; nothing if nobody reads on, as of `| head`.
+
+    Raises:
+        OSError: if it is full.
+    """
     try:
         print(text, flush=True)
     except BrokenPipeError:

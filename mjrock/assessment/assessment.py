@@ -239,7 +239,11 @@ def place_of(text: str) -> Place:
 
 
 def replaced(document: Document, place: Place, value: object) -> dict[str, Any]:
-    """A copy of tables in which a key has another value; LookupError for a place that they have not."""
+    """A copy of tables in which a key has another value.
+
+    Raises:
+        LookupError: for a place that they have not.
+    """
     copied = copy.deepcopy(dict(document))
     table: Any = copied
     for part in place[:-1]:
@@ -277,7 +281,11 @@ def from_toml(path: str | Path | None = None, *, text: str | None = None) -> Ass
 
 
 def read_text(path: Path) -> str:
-    """The text of a file; an AssessmentError for one that is too large or no text in UTF-8."""
+    """The text of a file.
+
+    Raises:
+        AssessmentError: for one that is too large or no text in UTF-8.
+    """
     size = require_file(path).stat().st_size
     if size > 4 * LARGEST:
         large = Message("has {size} bytes; the valid range is 0 to {most}", size=size, most=4 * LARGEST)
@@ -286,7 +294,11 @@ def read_text(path: Path) -> str:
 
 
 def decoded(data: bytes, name: str) -> str:
-    """The text of a file in UTF-8, or in UTF-16 as PowerShell writes it; an AssessmentError for any other."""
+    """The text of a file in UTF-8, or in UTF-16 as PowerShell writes it.
+
+    Raises:
+        AssessmentError: for any other.
+    """
     marked = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
         return data.decode("utf-16" if marked else "utf-8-sig")

@@ -172,7 +172,11 @@ class Reader:
         return value
 
     def value(self, key: Key, value: object, place: Place) -> Any:
-        """The value of a key, checked by its declaration; `RefusedError` where something is wrong with it."""
+        """The value of a key, checked by its declaration.
+
+        Raises:
+            RefusedError: where something is wrong with it.
+        """
         return self._of_kinds(key.kinds, key.within, value, place)
 
     def _of_kinds(self, kinds: tuple[Hint, ...], within: Within | None, value: object, place: Place) -> Any:

@@ -126,8 +126,12 @@ class CoulombFriction:
         return self.sliding
 
     def release(self, data: mujoco.MjData | None = None) -> None:
-        """Give every contact its friction row back, and clear the friction of the last step from `qfrc_applied` of its
-        `MjData`, if that is given. The next call may then have another. TypeError for what is no `MjData`."""
+        """Give every contact its friction row back, and clear the friction of the last step from `qfrc_applied` of
+        its `MjData`, if that is given. The next call may then have another.
+
+        Raises:
+            TypeError: for what is no `MjData`.
+        """
         require_kind("data", data, mujoco.MjData, type(None))
         self.model.pair_dim[:] = self.dimensions
         self.sliding, self._data, self._now = (), None, self.dimensions

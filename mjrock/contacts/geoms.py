@@ -48,9 +48,13 @@ def load(path: Path) -> mujoco.MjModel:
 
 
 def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
-    """The compiled model of either. An MjSpec itself is compiled, and stays as it is: MuJoCo 4.0 ends the process where
-    a copy does not compile for a keyframe of a nested attachment. TypeError for any other, and a ValueError with the
-    compiler's message for a specification that does not compile."""
+    """The compiled model of either. An MjSpec itself is compiled, and stays as it is: MuJoCo 4.0 ends the process
+    where a copy does not compile for a keyframe of a nested attachment.
+
+    Raises:
+        TypeError: for any other.
+        ValueError: with the compiler's message for a specification that does not compile.
+    """
     if isinstance(model, str | os.PathLike):
         load = "from_xml_string" if isinstance(model, str) and model.lstrip().startswith("<") else "from_xml_path"
         raise TypeError(f"model = {shown(model)} is not a MjModel or MjSpec; load it with mujoco.MjModel.{load}")
@@ -68,8 +72,11 @@ def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
 def geom_id(model: mujoco.MjModel, argument: str, value: object) -> int:
     """The number of a geom, from its name or number, or from the name of a body that has a single geom.
 
-    Messages call the value `argument`: TypeError unless it is a text or a whole number, ValueError if there is no such
-    geom, or the body has none or several.
+    Messages call the value `argument`.
+
+    Raises:
+        TypeError: unless it is a text or a whole number.
+        ValueError: if there is no such geom, or the body has none or several.
     """
     if isinstance(value, str):
         require_text(argument, value)
@@ -126,7 +133,11 @@ class GeomPair:
 
     @classmethod
     def named(cls, model: mujoco.MjModel, geom1: object, geom2: object) -> GeomPair:
-        """The pair of two geoms that `geom_id` finds; ValueError if both are one, or neither can move."""
+        """The pair of two geoms that `geom_id` finds.
+
+        Raises:
+            ValueError: if both are one, or neither can move.
+        """
         pair = cls(model, (geom_id(model, "geom1", geom1), geom_id(model, "geom2", geom2)))
         if pair.geoms[0] == pair.geoms[1]:
             raise ValueError(f"geom1 and geom2 = {shown(geom1)} are the same geom")

@@ -208,7 +208,11 @@ class Bench:
         )
 
     def meeting(self, pose: Pose) -> PairMeeting:
-        """How the geoms meet in a pose. ValueError if they cannot approach each other there."""
+        """How the geoms meet in a pose.
+
+        Raises:
+            ValueError: if they cannot approach each other there.
+        """
         met = meeting_of_geoms(self.pair, pose, friction=self.row.mixed.sliding, k=self.row.k)
         if not met.effective.mass < math.inf:
             raise ValueError(f"geom1 and geom2 = {self.pair.labels} cannot approach each other at {self.pose.label}")

@@ -150,7 +150,11 @@ def keyframe_names(model: mujoco.MjModel) -> tuple[str, ...]:
 
 
 def keyframe_id(model: mujoco.MjModel, keyframe: object) -> int:
-    """The number of a keyframe given by name or number; TypeError or ValueError with what the model has for none."""
+    """The number of a keyframe given by name or number.
+
+    Raises:
+        TypeError, ValueError: for any other, with those that the model has.
+    """
     known = ", ".join(keyframe_names(model)) or "none"
     if isinstance(keyframe, str):
         number = mujoco.mj_name2id(model, KEY, keyframe) if "\0" not in keyframe and keyframe.isprintable() else -1
@@ -165,8 +169,10 @@ def keyframe_id(model: mujoco.MjModel, keyframe: object) -> int:
 def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None) -> mujoco.MjData:
     """The model in a pose, at rest, with its mass matrix, its constraints but for contacts, and its weight.
 
-    Arguments are those of `Pose`. TypeError or ValueError for a keyframe or positions that the model cannot have, or
-    both.
+    Arguments are those of `Pose`.
+
+    Raises:
+        TypeError, ValueError: for a keyframe or positions that the model cannot have, or both.
     """
     if keyframe is not None and qpos is not None:
         raise ValueError(f"keyframe = {shown(keyframe)} and qpos are both given; give one of them")

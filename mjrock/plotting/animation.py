@@ -379,7 +379,11 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
 
 
 def frame_times(t: Array, step: float) -> Array:
-    """Times of the frames [s], `step` apart from the first sample to the last; a ValueError for too many."""
+    """Times of the frames [s], `step` apart from the first sample to the last.
+
+    Raises:
+        ValueError: for too many.
+    """
     count = int((t[-1] - t[0]) / step * (1 + 1e-12)) + 1
     if count > MOST_FRAMES:
         raise ValueError(f"the picture would have {count} frames; the valid range is 1 to {MOST_FRAMES}; raise speed")

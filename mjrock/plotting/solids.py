@@ -277,7 +277,11 @@ class Rendering(Artist):
 
 
 def in_three(ax: Axes) -> Axes3D:
-    """Axes of three dimensions; ValueError for those of two."""
+    """Axes of three dimensions.
+
+    Raises:
+        ValueError: for those of two.
+    """
     if not isinstance(ax, Axes3D):
         raise ValueError('ax has two dimensions, and the masonry is in space; add_subplot(projection="3d") makes three')
     return ax

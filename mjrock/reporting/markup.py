@@ -194,7 +194,11 @@ def pdf_writer() -> ModuleType:
 
 
 def write_pdf(path: Path, text: str) -> None:
-    """Write a page as PDF; ImportError as `pdf_writer`."""
+    """Write a page as PDF.
+
+    Raises:
+        ImportError: as `pdf_writer`.
+    """
     weasyprint = pdf_writer()
     sheet = FORMULAE.read_text(encoding="utf-8").replace('ROOT"', f'{base64.b64encode(ROOT.read_bytes()).decode()}"')
     with replacing(path) as partial:

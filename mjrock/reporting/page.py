@@ -163,8 +163,11 @@ class Request(NamedTuple):
 
 
 def required_runs(request: Request, words: Words) -> list[Run]:
-    """The runs of the responses, each of what the case or a mechanism is of; TypeError or ValueError for others, or for
-    none in a report without checks."""
+    """The runs of the responses, each of what the case or a mechanism is of.
+
+    Raises:
+        TypeError, ValueError: for others, or for none in a report without checks.
+    """
     _, responses, labels, _, bare = request
     if isinstance(responses, Mapping) and labels is not None:
         raise ValueError("labels are for a sequence of responses, and the names of a mapping are those of variants")
@@ -222,7 +225,12 @@ def require_same(name: str, response: Response, request: Request) -> None:
 
 
 def required_texts(name: str, given: object, known: Sequence[str]) -> dict[str, str]:
-    """Texts by names that are known; TypeError for no mapping of texts, ValueError for a name that is unknown."""
+    """Texts by names that are known.
+
+    Raises:
+        TypeError: for no mapping of texts.
+        ValueError: for a name that is unknown.
+    """
     if not isinstance(given, Mapping | None):
         raise TypeError(f"{name} = {shown(given)} is not a mapping of names to texts")
     for key, text in (given or {}).items():
@@ -233,7 +241,11 @@ def required_texts(name: str, given: object, known: Sequence[str]) -> dict[str, 
 
 
 def required_sections(sections: object) -> dict[str, object]:
-    """Further sections by their headings; TypeError if they are not a mapping of texts."""
+    """Further sections by their headings.
+
+    Raises:
+        TypeError: if they are not a mapping of texts.
+    """
     if not isinstance(sections, Mapping | None):
         raise TypeError(f"sections = {shown(sections)} is not a mapping of headings to texts, figures and results")
     return {require_text("a heading of sections", name): pieces for name, pieces in (sections or {}).items()}
@@ -383,7 +395,11 @@ def of_borne(name: str, result: Borne, words: Words) -> list[Markup]:
 
 
 def section(name: str, pieces: object, words: Words) -> list[Markup]:
-    """A section: texts, figures and the tables of results; TypeError for anything else."""
+    """A section: texts, figures and the tables of results.
+
+    Raises:
+        TypeError: for anything else.
+    """
     parts = [element("h2", name)]
     for piece in pieces if isinstance(pieces, list | tuple) else [pieces]:
         if isinstance(piece, Figure):
@@ -428,7 +444,11 @@ def of_impacts(
     runs: Sequence[Run],
     words: Words,
 ) -> list[inputs.Section]:
-    """Restitution and contacts, of all responses or of each variant; TypeError for anything else."""
+    """Restitution and contacts, of all responses or of each variant.
+
+    Raises:
+        TypeError: for anything else.
+    """
     cases = {run.variant: run.response.case for run in runs}
     e_of = dict(e) if isinstance(e, Mapping) else {"": e}
     contacts_of = dict(contacts) if isinstance(contacts, Mapping) else {"": contacts}

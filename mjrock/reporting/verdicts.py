@@ -80,11 +80,15 @@ class Mechanism(NamedTuple):
 
 
 def required_checks(checks: object, alone: str) -> list[Mechanism]:
-    """Checks by the names of their mechanisms; TypeError for anything else, ValueError for two kinematic ones of one.
+    """Checks by the names of their mechanisms.
 
     Args:
         checks: one, several of one mechanism, or a mapping of names to such.
         alone: the name of the mechanism where none is given.
+
+    Raises:
+        TypeError: for anything else.
+        ValueError: for two kinematic ones of one.
     """
     if checks is None:
         return []
@@ -120,7 +124,11 @@ def kind_of(subject: object) -> str:
 
 
 def codes_of(mechanisms: Sequence[Mechanism], language: str) -> list[Code]:
-    """The codes of all checks, each once; ValueError for one without texts in the language of the report."""
+    """The codes of all checks, each once.
+
+    Raises:
+        ValueError: for one without texts in the language of the report.
+    """
     checks = [check for one in mechanisms for check in (one.kinematic, *one.dynamic) if check is not None]
     codes = {check.code.name: check.code for check in checks}
     for code in codes.values():

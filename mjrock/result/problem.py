@@ -53,7 +53,11 @@ class WallProblem:
     contacts: Contacts
 
     def scene(self, method: Method = METHOD) -> Scene:
-        """The wall against its base and its side stop; ValueError for contacts that do not fit the case."""
+        """The wall against its base and its side stop.
+
+        Raises:
+            ValueError: for contacts that do not fit the case.
+        """
         return wall_scene(self.case, self.contacts, method)
 
     def course(self, scene: Scene) -> Course:
@@ -79,7 +83,11 @@ class MasonryProblem:
     case: MasonryCase
 
     def scene(self, method: Method = METHOD) -> Scene:
-        """The blocks on their joints; ValueError if they fall under their weight."""
+        """The blocks on their joints.
+
+        Raises:
+            ValueError: if they fall under their weight.
+        """
         return masonry_scene(self.case)
 
     def course(self, scene: Scene) -> Course:

@@ -1,7 +1,7 @@
 """Formats of records that state their step and unit: the files of data bases and of networks, and seismograms by ObsPy.
 
-Each parser takes the lines of a file and returns its traces, the components in their order. A ValueError with the line
-says where the header is another. FORMATS has all of them, and how each is recognised.
+Each parser takes the lines of a file and returns its traces, the components in their order, or raises a ValueError
+with the line where the header is another. FORMATS has all of them, and how each is recognised.
 """
 
 from __future__ import annotations
@@ -139,7 +139,8 @@ def parse_esm(lines: list[str]) -> list[Trace]:
 def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
     """An ESM file of accelerations [m/s2] every dt seconds, which states its own unit, step, and number of samples.
 
-    A ValueError is raised for a field of the header that such a file cannot have.
+    Raises:
+        ValueError: for a field of the header that such a file cannot have.
     """
     stated = {
         "SAMPLING_INTERVAL_S": repr(dt),

@@ -367,8 +367,8 @@ def records_in(
 def _read_all(
     files: Mapping[str, Path], read: Callable[[Path], GroundMotion | Sequence[GroundMotion]], skipped: dict[str, str]
 ) -> dict[str, GroundMotion | Sequence[GroundMotion]]:
-    """What is read from each file by its name. Those that hold no record are named in `skipped`, with a warning; a
-    `NoRecordError` is raised where none holds one."""
+    """What is read from each file by its name. Those that hold no record are named in `skipped`, with a warning.
+    Raises a `NoRecordError` where none holds one."""
     found = {}
     for name, path in files.items():
         try:

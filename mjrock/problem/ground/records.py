@@ -1,12 +1,12 @@
 """Text of recorded accelerations: lines, numbers, units and steps, and tables of times and accelerations.
 
 A parser takes the lines of a file and returns its traces. A number has ASCII digits and may have a Fortran exponent,
-1.5D-02. A ValueError with the line says where the samples are not as many as the file states, and where a word on a
-line of numbers is not a finite number.
+1.5D-02. A parser raises a ValueError with the line where the samples are not as many as the file states, and where a
+word on a line of numbers is not a finite number.
 
 A table, in text or a spreadsheet, has columns of times and accelerations, or samples in rows. The arguments are
 compared with the file: counts, steps and units in its header, a column of times beside a time step, numbers that stand
-alone before the samples. A ValueError names the line and both readings.
+alone before the samples. Where they differ, a ValueError is raised with the line and both readings.
 """
 
 from __future__ import annotations
@@ -114,7 +114,8 @@ Parse = Callable[[list[str]], list[Trace]]
 def checked_record(accel: ArrayLike, dt: SampleStep) -> tuple[Array, float]:
     """Accelerations as an array that cannot be written to, and their time step [s].
 
-    A TypeError or ValueError is raised unless they are a row of at least 2 finite numbers, and the step 1e-5 to 1 s.
+    Raises:
+        TypeError, ValueError: unless they are a row of at least 2 finite numbers, and the step 1e-5 to 1 s.
     """
     values = np.array(require_reals("accel", accel, "one row of at least 2 accelerations [m/s2]"))
     if values.ndim != 1 or len(values) < 2:
@@ -127,7 +128,11 @@ def checked_record(accel: ArrayLike, dt: SampleStep) -> tuple[Array, float]:
 
 
 def read(path: str | PathLike[str], traces: Callable[[Path], list[Trace]]) -> list[Trace]:
-    """The traces that a reader finds in a file; a ValueError with its name for a file of another format."""
+    """The traces that a reader finds in a file.
+
+    Raises:
+        ValueError: for a file of another format, with its name.
+    """
     path = require_path("path", path)
     try:
         with np.errstate(over="ignore"):  # a number that is too large in m/s2 is named
@@ -224,7 +229,11 @@ def stated_units(text: str) -> list[str]:
 
 
 def samples(lines: Sequence[str], header: int, count: int, stated: int | None = None) -> Array:
-    """All numbers after the header; a ValueError if they are not as many as a line states, the last by default."""
+    """All numbers after the header.
+
+    Raises:
+        ValueError: if they are not as many as a line states, the last by default.
+    """
     values = all_numbers(lines, header)
     if len(values) != count:
         raise ValueError(f"{len(values)} samples; the header states {count} in line {stated or header}")
@@ -257,7 +266,11 @@ def split_columns(word: str) -> list[str]:
 
 
 def number(word: str, place: int) -> float:
-    """A finite number; a ValueError with the line and the word for anything else."""
+    """A finite number.
+
+    Raises:
+        ValueError: with the line and the word for anything else.
+    """
     if not DECIMAL_NUMBER.fullmatch(word) or not math.isfinite(value := value_of(word)):
         raise ValueError(f"line {place}: {in_message(word)} is not a finite number such as -0.015, 1.5E-02 or 1.5D-02")
     return value
@@ -577,7 +590,7 @@ def _has_pairs(values: Array, decimals: int, scale: float) -> bool:
 
 
 def _table_of(lines: Sequence[str], skip: int | None) -> RecordTable:
-    """The header and the rows of a file; a ValueError names the first word of a row that is no number."""
+    """The header and the rows of a file. Raises a ValueError with the first word of a row that is no number."""
     first = 0 if skip is None else require_whole("skip", skip, 0, max(len(lines) - 1, 0))
     head: dict[int, str] = {}
     texts: dict[int, str] = {}
@@ -651,8 +664,11 @@ def _without_header(
 ) -> tuple[RecordTable, HeaderNumber | None]:
     """The table without rows that are numbers of a header, and the step that they state.
 
-    They are some where one of them is the number of rows or samples that follow. A ValueError names both readings where
-    they may be: one equals dt, stands alone, or the row is not as wide as the others.
+    They are some where one of them is the number of rows or samples that follow.
+
+    Raises:
+        ValueError: with both readings where they may be: one equals dt, stands alone, or the row is not as wide as the
+            others.
     """
     for rows in range(1, MOST_HEADS):
         lead, rest = [x for row in found.values[:rows] for x in row], found.values[rows:]

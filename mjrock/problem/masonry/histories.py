@@ -107,8 +107,10 @@ class Support:
 def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
     """The supports, from a mapping of names of fixed blocks to (t, dx, dz), in space to (t, dx, dy, dz).
 
-    Supports of an earlier case are checked likewise: the masonry may be another one. A TypeError or ValueError names
-    the block and what is wrong.
+    Supports of an earlier case are checked likewise: the masonry may be another one.
+
+    Raises:
+        TypeError, ValueError: for anything else, with the block and what is wrong.
     """
     if isinstance(given, tuple) and all(isinstance(support, Support) for support in given):
         given = {support.block: support.histories for support in given}

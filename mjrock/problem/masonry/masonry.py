@@ -559,8 +559,11 @@ class Masonry(Constructors, NotebookPicture):
         return masonry
 
     def convex_in_space(self, what: str) -> list[Polyhedron]:
-        """The blocks. A ValueError says what takes convex blocks in space alone, if they are in the plane or not
-        convex."""
+        """The blocks, for what takes convex ones in space alone.
+
+        Raises:
+            ValueError: with what takes them, if they are in the plane or not convex.
+        """
         if not self.in_space:
             raise ValueError("blocks = blocks in the plane have no such file; make them bodies with Polyhedron.prism")
         if compounds := [n for n, block in zip(self.names, self.blocks, strict=True) if isinstance(block, Compound)]:
@@ -568,9 +571,10 @@ class Masonry(Constructors, NotebookPicture):
         return [block for block in self.blocks if isinstance(block, Polyhedron)]
 
     def _touching(self) -> Self:
-        """Itself. A ValueError names the blocks that are not fixed and have no joint, and the nearest gap.
+        """Itself, with a warning of faces that lie a little farther apart than the tolerance.
 
-        It warns of faces that lie a little farther apart than the tolerance.
+        Raises:
+            ValueError: for blocks that are not fixed and have no joint, with their names and the nearest gap.
         """
         touching = {i for joint in self.joints for i in (joint.below, joint.above)}
         loose = [i for i in self.free if i not in touching]

@@ -29,7 +29,11 @@ class RigidStack:
 
     @classmethod
     def from_masonry(cls, masonry: Masonry) -> Self:
-        """The stack that a masonry is; a ValueError says if it is not one, is held both ways or too squat to rock."""
+        """The stack that a masonry is.
+
+        Raises:
+            ValueError: if it is not one, is held both ways or too squat to rock.
+        """
         blocks, joints = masonry.blocks, masonry.joints
         sides = tuple(i for i, joint in enumerate(joints) if is_side(blocks, joint))
         beds = [i for i in range(len(joints)) if i not in sides]

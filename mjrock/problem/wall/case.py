@@ -177,7 +177,11 @@ class Case(Carrying):
         """What moves a fixed block: nothing does."""
 
     def require_start(self, pose: Array, velocity: Array) -> Array:
-        """The velocity of a start [m/s, rad/s], shape (1, 3); ValueError for a rotation beyond 90 degrees."""
+        """The velocity of a start [m/s, rad/s], shape (1, 3).
+
+        Raises:
+            ValueError: for a rotation beyond 90 degrees.
+        """
         require_within("start, rotation", float(pose[0, 2]), -ON_ITS_FACE, ON_ITS_FACE, "rad")
         return velocity
 

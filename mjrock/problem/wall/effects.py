@@ -280,7 +280,11 @@ Kind = TypeVar("Kind", bound=Effect)
 
 
 def required_effects(name: str, values: Any, kinds: tuple[type[Kind], ...], takes: str = "") -> tuple[Kind, ...]:
-    """Effects of some kinds, or a single one, as a tuple; a TypeError with their name says what they should be."""
+    """Effects of some kinds, or a single one, as a tuple.
+
+    Raises:
+        TypeError: for any other, with their name and the kinds that they may have.
+    """
     given = (values,) if isinstance(values, kinds) else values
     require_sequence(name, given, takes or f"a sequence of {named([kind.__name__ for kind in kinds])}")
     for i, one in enumerate(given):

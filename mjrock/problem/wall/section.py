@@ -122,8 +122,12 @@ class Moments(NamedTuple):
 
 
 def require_profile(profile: Sequence[Sequence[float]], thickness: float, height: float) -> Profile:
-    """A profile as pairs of floats; a ValueError says if it does not go from the base of this thickness up to this
-    height [m], or if a value is out of range."""
+    """A profile as pairs of floats.
+
+    Raises:
+        ValueError: if it does not go from the base of this thickness up to this height [m], or if a value is out of
+            range.
+    """
     require_sequence("profile", profile, "a sequence of pairs of height and thickness [m]")
     pairs: list[tuple[float, float]] = []
     for i, pair in enumerate(profile):

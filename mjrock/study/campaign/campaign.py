@@ -139,7 +139,11 @@ def _required_limit(limit: float, executor: Executor | None) -> float:
 
 
 def required_tasks(tasks: object) -> Iterable[Task]:
-    """Tasks as something that can be gone through; TypeError unless they are, and for a text."""
+    """Tasks as something that can be gone through.
+
+    Raises:
+        TypeError: unless they are, and for a text.
+    """
     if not is_iterable(tasks):
         raise TypeError(f"tasks = {shown(tasks)} are not tasks that can be gone through")
     return cast(Iterable[Task], tasks)

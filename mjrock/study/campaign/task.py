@@ -24,7 +24,10 @@ Value = str | int | float | None
 
 def table_value(value: object) -> Value:
     """A value as a table holds it: text, a 64-bit integer, a float or None; NaN becomes None, a truth value 0 or 1.
-    ValueError for anything else."""
+
+    Raises:
+        ValueError: for anything else.
+    """
     if isinstance(value, np.generic):
         value = value.item()
     if value is None:
@@ -197,7 +200,7 @@ def carry_out(task: Task, history: Path | None) -> Row:
 
 
 def _named(what: str, value: object) -> Value:
-    """A value as a table holds it; a ValueError that names it for one that no table holds."""
+    """A value as a table holds it. Raises a ValueError with its name for one that no table holds."""
     try:
         return table_value(value)
     except ValueError as error:
@@ -280,7 +283,7 @@ class Grid(Sequence[Task]):
 
 
 def _axis_values(name: str, values: object) -> list[object]:
-    """The values of an axis; a TypeError or ValueError with its name if there are none."""
+    """The values of an axis. Raises a TypeError or ValueError with its name if there are none."""
     if not (isinstance(values, str) or is_iterable(values)):
         raise TypeError(f"the axis {name} = {shown(values)} is not a row of values")
     if not (found := listed(f"the axis {name}", values)):
@@ -289,7 +292,11 @@ def _axis_values(name: str, values: object) -> list[object]:
 
 
 def labelled(task: Task, labels: Mapping[str, object]) -> Task:
-    """The task with these labels; its own count where both have one of a name. TypeError for what is not a task."""
+    """The task with these labels; its own count where both have one of a name.
+
+    Raises:
+        TypeError: for what is not a task.
+    """
     if not hasattr(task, "labels"):
         raise TypeError(f"build gives {shown(task)}, which is not a task of a campaign, such as an Analysis")
     labels = dict(labels) | dict(task.labels)

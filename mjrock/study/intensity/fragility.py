@@ -287,7 +287,7 @@ def _likeliest(x: Array, fell: Flags) -> Fragility:
 
 
 def _flags(overturned: ArrayLike) -> Flags:
-    """Whether each run overturned; TypeError or ValueError unless each value is True or False, or 1 or 0."""
+    """Whether each run overturned. Raises a TypeError or ValueError unless each value is True or False, or 1 or 0."""
     takes = "whether each run overturned: True or False, or 1 or 0; lost(rows) makes it of the rows of a campaign"
     values = require_plain("overturned", overturned, takes, "biuf")
     unclear = np.flatnonzero((values != 0) & (values != 1))
@@ -297,7 +297,11 @@ def _flags(overturned: ArrayLike) -> Flags:
 
 
 def group_numbers(labels: NDArray[np.generic], least: int = FEWEST_GROUPS) -> tuple[int, Integers]:
-    """How many groups there are, and the number of that of each value; ValueError for too few for an interval."""
+    """How many groups there are, and the number of that of each value.
+
+    Raises:
+        ValueError: for too few for an interval.
+    """
     names, group = np.unique(labels, return_inverse=True)
     if len(names) < least:
         raise ValueError(
@@ -315,8 +319,11 @@ def drawn(groups: int, resamples: int, seed: int) -> Integers:
 
 
 def labels_for(groups: ArrayLike | None, count: int) -> NDArray[np.generic]:
-    """The group of each of a number of values; None takes each as a group of its own. TypeError or ValueError unless
-    they are all text or all numbers, without NaN."""
+    """The group of each of a number of values; None takes each as a group of its own.
+
+    Raises:
+        TypeError, ValueError: unless they are all text or all numbers, without NaN.
+    """
     if groups is None:
         return np.arange(count)
     takes = "the name or the number of the group of each run"

@@ -189,7 +189,12 @@ def overturning_intensity(
 
 
 def builds_of(build: AnyBuild | Mapping[str, AnyBuild]) -> dict[str, AnyBuild]:
-    """The function of each record, by name; TypeError for a name that is no text, ValueError for no records."""
+    """The function of each record, by name.
+
+    Raises:
+        TypeError: for a name that is no text.
+        ValueError: for no records.
+    """
     builds = dict(build) if isinstance(build, Mapping) else {"record": build}
     if not builds:
         raise ValueError("build holds no records; at least one is needed")
@@ -205,7 +210,11 @@ def _peak(build: Build, scale: float) -> float:
 
 
 def built(build: Build, scale: float, name: str) -> Analysis:
-    """The analysis that a function makes of a scale; TypeError with its name unless it returns an `Analysis`."""
+    """The analysis that a function makes of a scale.
+
+    Raises:
+        TypeError: unless it returns an `Analysis`, with its name.
+    """
     if not takes(build, 1):
         raise TypeError(f"{name} = {shown(build)} is not a function of a scale")
     with warnings.catch_warnings():
@@ -219,8 +228,10 @@ def built(build: Build, scale: float, name: str) -> Analysis:
 def bracket(falls: Callable[[float], bool], start: float = 1.0) -> tuple[float, float]:
     """Two neighbouring scales of which the lower leaves a wall standing and the upper overturns it.
 
-    From `start` the scale goes up by GROWTH until the wall falls, or down until it stands; ValueError if it stands at
-    LARGEST_SCALE times the start, or falls at LEAST_SCALE times the start.
+    From `start` the scale goes up by GROWTH until the wall falls, or down until it stands.
+
+    Raises:
+        ValueError: if it stands at LARGEST_SCALE times the start, or falls at LEAST_SCALE times the start.
     """
     low = high = start
     if falls(start):
@@ -249,7 +260,10 @@ def lowest(falls: Callable[[float], bool], low: float, high: float, below: int, 
     """Two neighbouring scales, as those given, below which the wall has stood at `below` weaker ones in a row.
 
     From `low` the scale goes down by `spacing` [-] at a time. Where the wall falls, that scale is the upper one of the
-    two, and the count begins again. ValueError if it falls at LEAST_SCALE times `low` or less.
+    two, and the count begins again.
+
+    Raises:
+        ValueError: if it falls at LEAST_SCALE times `low` or less.
     """
     scale, stood, least = low, 0, LEAST_SCALE * low
     while stood < below:

@@ -356,6 +356,10 @@ def codes() -> tuple[str, ...]:
 
 
 def code_of(code: Code | str = USUAL_CODE) -> Code:
-    """A code, or that of a name; TypeError or ValueError for anything else."""
+    """A code, or that of a name.
+
+    Raises:
+        TypeError, ValueError: for anything else.
+    """
     require_kind("code", code, Code, str)
     return code if isinstance(code, Code) else _codes()[require_one_of("code", code, _codes())]

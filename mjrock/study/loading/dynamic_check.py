@@ -278,7 +278,7 @@ def dynamic_check(
 
 
 def _dynamic_rule(code: Code) -> DynamicRule:
-    """What a code demands of dynamic runs; ValueError for one without a check by them."""
+    """What a code demands of dynamic runs. Raises a ValueError for one without a check by them."""
     if code.dynamic is None:
         raise ValueError(f"code = {code.name} has no check by dynamic runs")
     return code.dynamic

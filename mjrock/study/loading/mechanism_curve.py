@@ -104,7 +104,11 @@ class PartCurve(NamedTuple):
 
     @classmethod
     def from_curve(cls, name: str, curve: LimitCurve) -> PartCurve:
-        """That of a limit curve; a ValueError with its name says if it bears nothing or has been ended."""
+        """That of a limit curve.
+
+        Raises:
+            ValueError: if it bears nothing or has been ended.
+        """
         masonry, borne = curve.start.masonry, curve.multiplier
         if curve.start.loads:
             raise ValueError(f"{name} = {curve!r} has loads; the check is of a horizontal force: give them as effects")
@@ -155,7 +159,7 @@ def _of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
 
 
 def _require_some(curve: LimitCurve, d: float, alpha_0: float, participation: float) -> None:
-    """Warn of a curve that ends at d [m] while something is borne; a ValueError says if that is where it begins."""
+    """Warn of a curve that ends at d [m] while something is borne. Raises a ValueError if it begins there."""
     if curve.ended.startswith(MOVED):
         raise ValueError(f"case = {curve!r} was ended where something is borne; leave out to")
     if d <= 0:
@@ -172,7 +176,7 @@ def _require_some(curve: LimitCurve, d: float, alpha_0: float, participation: fl
 
 
 def _of_wall(case: Case, code: Code) -> MechanismCurve:
-    """A wall that overturns, with its ties; ValueError if they hold it for good."""
+    """A wall that overturns, with its ties. Raises a ValueError if they hold it for good."""
     require_wall("case", case, "mr.limit_curve(masonry, direction)")
     curve = pushover(case)
     if not math.isfinite(curve.end):

@@ -94,7 +94,11 @@ class Compound:
 
     @cached_property
     def joined(self) -> tuple[Joint | SpaceJoint, ...]:
-        """Where the parts lie on each other; a ValueError says if they overlap or do not hang together."""
+        """Where the parts lie on each other.
+
+        Raises:
+            ValueError: if they overlap or do not hang together.
+        """
         find = joints_in_space if self.in_space else joints_in_plane
         try:
             joints: tuple[Joint | SpaceJoint, ...] = find(_named(self.parts), PARTS_APART, PARTS_APART)  # type: ignore[arg-type]
@@ -179,7 +183,11 @@ def _named(parts: Sequence[Polygon | Polyhedron]) -> list[Polygon | Polyhedron]:
 
 
 def checked_parts(parts: Sequence[Polygon | Polyhedron]) -> tuple[Polygon | Polyhedron, ...]:
-    """Parts of one kind; a TypeError or ValueError says what is wrong with them."""
+    """Parts of one kind.
+
+    Raises:
+        TypeError, ValueError: for any other.
+    """
     require_sequence("parts", parts, "a list of blocks")
     if not 2 <= len(parts) <= MOST_PARTS:
         raise ValueError(f"parts has {len(parts)} blocks; the valid range is 2 to {MOST_PARTS}")

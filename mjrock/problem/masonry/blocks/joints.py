@@ -232,11 +232,14 @@ class Meetings(NamedTuple):
 def joints_in_plane(
     blocks: Sequence[Flat], tolerance: float, gap: float, pairs: Integers | None = None
 ) -> tuple[Joint, ...]:
-    """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
+    """The joints between blocks, in the order of the blocks.
 
     Two edges make a joint where they overlap along a line and are nowhere farther apart than the gap [m]. The tolerance
     is the largest overlap of blocks [m]. The joint lies halfway between them. Two fixed blocks make none. Pairs are the
     numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
+
+    Raises:
+        OverlapError: for blocks that overlap more, with the two that overlap most.
     """
     names, edges = names_of(blocks), Edges.from_blocks(blocks)
     pairs = neighbours(blocks, gap) if pairs is None else pairs

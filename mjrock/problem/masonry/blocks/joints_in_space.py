@@ -226,11 +226,14 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
 def joints_in_space(
     blocks: Sequence[Shape], tolerance: float, gap: float, pairs: Integers | None = None
 ) -> tuple[SpaceJoint, ...]:
-    """The joints between blocks, in the order of the blocks. An `OverlapError` names the two that overlap most.
+    """The joints between blocks, in the order of the blocks.
 
     Two faces make a joint where they cover a common area and are nowhere in it farther apart than the gap [m]. The
     tolerance is the largest overlap of blocks [m]. The joint lies halfway between them. Two fixed blocks make none.
     Pairs are the numbers of blocks that are looked at, shape (pairs, 2); None looks at all.
+
+    Raises:
+        OverlapError: for blocks that overlap more, with the two that overlap most.
     """
     names, solids = names_of(blocks), [solid for block in blocks for solid in block.solids]
     first, number = numbered_parts(blocks)

@@ -178,14 +178,22 @@ class InwardsError(ValueError):
 
 
 def checked_name(name: str | None) -> str | None:
-    """The name of a block, or None; a TypeError or ValueError says what is wrong with it."""
+    """The name of a block, or None.
+
+    Raises:
+        TypeError, ValueError: for any other.
+    """
     if name is not None and (require_text("name", name).splitlines() != [name] or "|" in name or name == "world"):
         raise ValueError(f"name = {shown(name)} is empty, is world, or holds a | or the end of a line")
     return name
 
 
 def required_vertices(vertices: ArrayLike | Sequence[Sequence[float]], least: int, axes: int) -> Array:
-    """Vertices as an array, at least a given number; a TypeError or ValueError says what is wrong with them."""
+    """Vertices as an array, at least a given number.
+
+    Raises:
+        TypeError, ValueError: for any other.
+    """
     shape = f"({least} to {MOST_VERTICES}, {axes})"
     points = require_reals("vertices", vertices, f"an array of real numbers of the shape {shape}")
     if points.ndim != 2 or points.shape[1] != axes or not least <= len(points) <= MOST_VERTICES:
@@ -203,7 +211,11 @@ def require_near(points: Array) -> None:
 
 
 def checked_corners(vertices: ArrayLike | Sequence[Sequence[float]]) -> Corners:
-    """Vertices as pairs of numbers, counterclockwise; a TypeError or ValueError names what is wrong with them."""
+    """Vertices as pairs of numbers, counterclockwise.
+
+    Raises:
+        TypeError, ValueError: for any other.
+    """
     corners = required_vertices(vertices, 3, 2)
     edges = next_of(corners) - corners
     lengths = np.hypot(*edges.T)

@@ -215,7 +215,8 @@ def principal_of(inertia: Array) -> tuple[Array, Array]:
 def checked_hull(vertices: ArrayLike | Sequence[Sequence[float]]) -> tuple[Hull, Vertices]:
     """The hull of vertices, and those that are its corners, in the order given.
 
-    A TypeError or ValueError names what is wrong with them.
+    Raises:
+        TypeError, ValueError: for other than at least 4 points in space, two that coincide, and no convex body.
     """
     points = required_vertices(vertices, 4, 3)
     extent = float(np.ptp(points, axis=0).max())

@@ -169,7 +169,8 @@ class Inner(NamedTuple):
 def side_of(blocks: Sequence[FlatBlock], side_stop: bool | SideStop) -> FlatBlock | None:
     """The fixed block behind the inner face of a stack, from z = 0 up to its top or to that of the stop; or None.
 
-    A ValueError says if the stop ends above the stack.
+    Raises:
+        ValueError: if the stop ends above the stack.
     """
     require_kind("side_stop", side_stop, bool, SideStop)
     if not side_stop:
@@ -223,7 +224,11 @@ def _behind(pieces: Sequence[Inner], top: float) -> list[tuple[tuple[float, floa
 
 
 def required_unit(unit: object) -> tuple[float, float]:
-    """Length and height of a unit [m]; a TypeError or ValueError says what is wrong with them."""
+    """Length and height of a unit [m].
+
+    Raises:
+        TypeError, ValueError: for any other.
+    """
     if not isinstance(unit, tuple | list) or len(unit) != 2:
         raise TypeError(f"unit = {shown(unit)} is not the length and the height of a unit")
     long = require_within("unit length", unit[0], 1e-2, 100.0, "m")
@@ -231,7 +236,11 @@ def required_unit(unit: object) -> tuple[float, float]:
 
 
 def required_ends(name: str, measure: Taper, low: float, high: float) -> tuple[float, float]:
-    """A measure at both ends [m]; a TypeError or ValueError says what is wrong with it."""
+    """A measure at both ends [m].
+
+    Raises:
+        TypeError, ValueError: for any other.
+    """
     if not isinstance(measure, tuple | list):
         measure = (measure, measure)
     if len(measure) != 2:

@@ -339,7 +339,7 @@ def _holes(openings: Sequence[tuple[float, Opening]], walls: Walls) -> tuple[lis
 
 
 def _require_inside(i: int, taken: Rectangle, walls: Walls) -> None:
-    """A ValueError says where an opening with its lintel does not lie within the courses that it cuts."""
+    """Raise a ValueError for an opening that does not lie, with its lintel, within the courses that it cuts."""
     left, right, sill, top = taken
     near = WHOLE * walls.unit
     if top > (walls.courses + walls.gable) * walls.high + near:

@@ -329,7 +329,11 @@ class Bound(NamedTuple):
 
     @classmethod
     def from_mesh(cls, body: Mesh) -> Bound:
-        """A ValueError names a body whose vertices bound none."""
+        """A body with its hull.
+
+        Raises:
+            ValueError: with its name, if its vertices bound none.
+        """
         with about(f"body {body.name}"):
             hull = hull_of(body.vertices)
         body = oriented(body)

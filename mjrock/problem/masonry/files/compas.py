@@ -1,7 +1,7 @@
 """The JSON of COMPAS: a model or problem of compas_dem, and an assembly of compas_assembly.
 
-Both name the class of a part in `dtype` and keep it in `data`, as the serialisation of COMPAS 2 does. What reads a file
-raises a ValueError with what is wrong.
+Both name the class of a part in `dtype` and keep it in `data`, as the serialisation of COMPAS 2 does. A file that
+cannot be read raises a ValueError with what is wrong.
 """
 
 from __future__ import annotations

@@ -142,7 +142,7 @@ class DrawingError(ValueError):
 
 
 def _sound(call: Callable[P, Result], *given: P.args, **options: P.kwargs) -> Result:
-    """What a call into the library of drawings returns; a ValueError for whatever it raises."""
+    """What a call into the library of drawings returns. Raises a ValueError for any error of it."""
     try:
         return call(*given, **options)
     except DrawingError:

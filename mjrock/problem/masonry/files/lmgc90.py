@@ -1,7 +1,7 @@
 """The input of LMGC90: bodies of the kind RBDY3 with polyhedra POLYR, from the files of a folder DATBOX.
 
 BODIES.DAT has the bodies in axes of their own, DOF.INI how these are turned, BULK_BEHAV.DAT the densities, and
-DRV_DOF.DAT the bodies that are held. What reads a file raises a ValueError with what is wrong.
+DRV_DOF.DAT the bodies that are held. A file that cannot be read raises a ValueError with what is wrong.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Files of meshes: Wavefront OBJ, STL and PLY.
 
-What reads a file raises a ValueError with the line, where there is one, and what is wrong.
+A file that cannot be read raises a ValueError with the line, where there is one, and what is wrong.
 """
 
 from __future__ import annotations
@@ -211,7 +211,11 @@ def _triple(words: Sequence[str]) -> tuple[float, float, float]:
 
 
 def obj_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
-    """Blocks as the text of an OBJ file, one object each. A ValueError names a block whose name it cannot hold."""
+    """Blocks as the text of an OBJ file, one object each.
+
+    Raises:
+        ValueError: for a block whose name it cannot hold.
+    """
     lines, before = ["# metres, z upwards"], 1
     for block, name in zip(blocks, names, strict=True):
         if "#" in name or name.endswith("\\") or name.strip() != name:

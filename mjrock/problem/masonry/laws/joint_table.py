@@ -157,7 +157,11 @@ class ByName:
         return dict(self.values)
 
     def __call__(self, joint: AnyJoint) -> Any:
-        """The value of a joint; a ValueError says if it has none."""
+        """The value of a joint.
+
+        Raises:
+            ValueError: if it has none.
+        """
         if joint.name not in self._by_name:
             raise ValueError(f"the joint {joint.name} has no value among those of {', '.join(self._by_name)}")
         return self._by_name[joint.name]

@@ -47,7 +47,10 @@ def parts_above(blocks: StackBlocks, beds: Sequence[Joint | SpaceJoint]) -> list
 def wall_of(blocks: StackBlocks, joint: Joint | SpaceJoint, part: Sequence[int]) -> Block:
     """Some blocks as one rigid wall on a joint: as thick as the joint, with their mass, its centroid where theirs is.
 
-    In space the joint is as thick as where it is thinnest. A ValueError says if they are too squat for a rocking wall.
+    In space the joint is as thick as where it is thinnest.
+
+    Raises:
+        ValueError: if they are too squat for a rocking wall.
     """
     mass = np.array([blocks[i].mass for i in part])
     height = float(mass @ [blocks[i].centroid[-1] - joint.middle[-1] for i in part]) / float(mass.sum())
