@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from mjrock.study.intensity.fragility import drawn as drawn_groups
 from mjrock.study.intensity.fragility import fit_fragility, resampled
 
 
@@ -112,6 +113,16 @@ def test_groups_of_one_run_each_are_independent_runs():
         assert widths[1] == pytest.approx(widths[0], rel=0.15)
     bands = [np.subtract(*norm.ppf(fit.band([0.3, 0.4, 0.6])[::-1])) for fit in (alone, grouped)]
     np.testing.assert_allclose(bands[1], bands[0], rtol=0.2)
+
+
+def test_a_resample_is_the_fit_to_all_runs_of_its_groups():
+    """Equal runs count once in the fit to resamples, with a weight."""
+    x, fell, record = clustered(0)
+    fit = fit_fragility(x, fell, record, resamples=20)
+    for times, (median, dispersion) in zip(drawn_groups(30, 20, 0), fit.resamples, strict=True):
+        each = np.repeat(np.arange(len(x)), times[record])
+        alone = fit_fragility(x[each], fell[each])
+        assert (median, dispersion) == pytest.approx((alone.median, alone.dispersion), rel=1e-9)
 
 
 def test_the_same_seed_draws_the_same_groups():

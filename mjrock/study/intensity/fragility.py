@@ -255,10 +255,14 @@ def fit_fragility(
     if groups is None:
         return fit
     names, group = group_numbers(labels_for(groups, len(x)))
+    runs, number = np.unique(x + 1j * fell, return_inverse=True)  # equal ones count once
+    of_groups = np.zeros((names, len(runs)))
+    np.add.at(of_groups, (group, number), 1.0)
     draws = drawn(names, resamples, seed)
-    count, at_once = len(draws), max(1, MOST_VALUES // len(x))
-    fits = [resampled(np.log(x), fell, draws[i : i + at_once, group].astype(float)) for i in range(0, count, at_once)]
-    curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(number for _, number in fits)
+    count, at_once = len(draws), max(1, MOST_VALUES // len(runs))
+    weights = (draws[i : i + at_once] @ of_groups for i in range(0, count, at_once))
+    fits = [resampled(np.log(runs.real), runs.imag > 0, each) for each in weights]
+    curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(each for _, each in fits)
     curves.setflags(write=False)
     if without > MOST_WITHOUT * count:
         warn_of(
