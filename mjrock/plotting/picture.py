@@ -10,6 +10,7 @@ from typing import Concatenate, ParamSpec, Protocol, TypeVar, cast, overload
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 from numpy.typing import ArrayLike
 
 from ..problem.wall.case import Case
@@ -32,6 +33,8 @@ Check = Callable[[str, object], object]
 """Raises a TypeError or ValueError with the name and the value of an invalid argument."""
 MOST_COLUMNS = 50
 """Most panels beside each other."""
+BETWEEN, LOWER = 0.12, 0.95
+"""Height between two rows of panels [inch], and that over which a figure of panels is not made lower, over its own."""
 
 
 def kind(*kinds: type) -> Check:
@@ -206,13 +209,18 @@ def single(draw: Drawing, size: tuple[float, float] = (5.2, 3.6)) -> Figure:
 def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
     """Several drawings, each on an Axes of its own under its title.
 
-    Drawings in the plane that are to scale, such as those of `blocks`, have one scale and level.
+    Drawings in the plane that are to scale, such as those of `blocks`, have one scale and level, and a row of them is
+    no higher than they need.
     """
     figure, axes = figure_of_panels(len(drawings), columns, (4.4, 3.4))
     drawn = [draw(ax) for ax, (_, draw) in zip(axes.flat, drawings, strict=False)]
     for ax, (title, _) in zip(drawn, drawings, strict=True):
         ax.set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)
-    one_scale([ax for ax in drawn if ax.name != "3d" and ax.get_aspect() != "auto"])
+    to_scale = [ax for ax in drawn if ax.name != "3d" and ax.get_aspect() != "auto"]
+    one_scale(to_scale)
+    rows = [drawn[i : i + columns] for i in range(0, len(drawn), columns)]
+    if any(set(row) <= set(to_scale) for row in rows):
+        fit_height(figure, rows)
     return figure
 
 
@@ -223,3 +231,15 @@ def one_scale(axes: Sequence[Axes]) -> None:
         if len(own) and np.ptp(own) <= 2 * np.ptp(own, axis=1).max():
             for ax in axes:
                 getattr(ax, f"set_{name}lim")(own.min(), own.max())
+
+
+def fit_height(figure: Figure, rows: Sequence[Sequence[Axes]]) -> None:
+    """Make a figure only as high as what its rows of Axes show, as drawings to scale may be lower than their place."""
+    figure.draw_without_rendering()
+    boxes = [Bbox.union([box for ax in row if (box := ax.get_tightbbox())]) for row in rows]
+    needed = sum(box.height / figure.dpi + BETWEEN for box in boxes)
+    if needed < LOWER * figure.get_figheight():
+        figure.set_figheight(needed)
+        spec = rows[0][0].get_subplotspec()
+        assert spec is not None
+        spec.get_gridspec().set_height_ratios([max(ax.bbox.height for ax in row) for row in rows])

@@ -247,3 +247,15 @@ def test_drawings_of_blocks_beside_each_other_have_one_scale():
     walls = [mr.Masonry.running_bond(length, 1.0, (0.4, 0.2), k_n=1e9) for length in (1.2, 2.4)]
     figure = plotting.panels([("a", lambda ax, wall=wall: plotting.blocks(ax, wall)) for wall in walls])
     assert len({(ax.get_xlim(), ax.get_ylim()) for ax in figure.axes}) == 1
+
+
+def test_panels_of_low_blocks_have_no_empty_bands(responses):
+    """Walls 4 m long and 0.8 m high fill their row, and a history below them is no lower."""
+    wall = mr.Masonry.running_bond(4.0, 0.8, (0.4, 0.2), k_n=1e9)
+    blocks = "a", lambda ax: plotting.blocks(ax, wall)
+    figure = plotting.panels([blocks, blocks, ("b", lambda ax: plotting.rotation(ax, responses))])
+    figure.draw_without_rendering()
+    left, right, history = (ax.get_tightbbox() for ax in figure.axes if ax.get_visible())
+    assert left.height + history.height > 0.9 * figure.bbox.height
+    assert left.width + right.width > 0.9 * figure.bbox.width  # they are not drawn smaller
+    assert 3.0 < history.height / figure.dpi < 4.0
