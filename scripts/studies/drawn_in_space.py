@@ -29,7 +29,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.geometry.poses import rotations
 from mjrock.plotting import animation, rasterizer
-from mjrock.plotting.solids import Solids
+from mjrock.plotting.solids import Rendering, Solids
 from mjrock.quantities import Array, Integers
 from mjrock.result.bodies import Body, bodies_of
 from scripts.shared import cli
@@ -40,23 +40,30 @@ try:
 except ImportError:
     pv = None
 
-SIZE = 800, 450
-"""Of a picture [pixel]."""
+SIZE, DPI = (800, 450), 100.0
+"""Of a film [pixel], and its pixels to an inch."""
 FRAMES = 20
 """Frames that are timed."""
 
 
 class View:
-    """What a camera sees of a response in a picture: the axes of the picture, its middle and half of its height [m]."""
+    """A response as `plotting.animate` shows it: the middle of the picture and half of its height [m]."""
 
     def __init__(self, answer: mr.Response, camera: tuple[float, float]) -> None:
-        self.answer, self.solids = answer, Solids.of(answer, camera=camera)
+        self.solids = Solids.of(answer, camera=camera)
         self.bodies = bodies_of(answer.moving, answer.velocity)
-        eye, azimuth = self.solids.eye, np.radians(camera[1])
-        right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
-        self.axes = np.column_stack([right, np.cross(eye, right)])
-        low, high = self.solids.extent()
-        self.middle, self.half = 0.5 * (low + high), 0.3 * float(np.linalg.norm(high - low))
+        self.film, self.update = animation.scene(self.solids, [], None)
+        for part in (*self.film.findobj(Text), *self.film.findobj(Line2D)):
+            part.set_visible(False)
+        self.stage = animation.Stage(self.film, DPI)
+        (rendering,) = self.film.findobj(Rendering)
+        self.seen: rasterizer.View = rendering.view()  # one scale for all
+        self.middle, self.half = self.seen.middle, 0.5 * self.seen.pixel * self.seen.size[1]
+
+    def drawn(self, frame: int) -> Array:
+        """A frame of the film, shape (height, width, 3)."""
+        self.update(frame)
+        return np.asarray(self.stage.drawn())
 
     @property
     def shown(self) -> list[Body]:
@@ -98,9 +105,8 @@ def wrong(view: View, frame: int) -> float:
     scene, draw = plotter(view, list(named_by_colour(len(view.shown))), lighting=False)
     true, solids = draw(frame) // 16, view.solids
     scene.close()
-    surfaces, pixel = solids.stage(frame)[0], 2 * view.half / SIZE[1]
-    seen = rasterizer.View(np.array([*view.axes.T, solids.eye]), view.middle, SIZE, pixel)
-    number = np.append(np.searchsorted(solids.shown, solids.facets.block), -1)[seen.drawn(surfaces)[1].clip(-1)][::-1]
+    drawn = view.seen.drawn(solids.stage(frame)[0])[1].clip(-1)
+    number = np.append(np.searchsorted(solids.shown, solids.facets.block), -1)[drawn][::-1]
     inside = (true != 15).any(axis=-1)
     for shift in ((0, 1), (1, 0), (0, -1), (-1, 0)):  # edges fall on one pixel or the next
         inside &= (true == np.roll(true, shift, (0, 1))).all(axis=-1)
@@ -136,20 +142,6 @@ def rendered(view: View) -> Callable[[int], Array]:
     return draw
 
 
-def filmed(view: View) -> Callable[[int], Array]:
-    """What draws a frame as `plotting.animate` does."""
-    figure, update = animation.scene(view.solids, [], None)
-    for part in (*figure.findobj(Text), *figure.findobj(Line2D)):
-        part.set_visible(False)
-    stage = animation.Stage(figure, 100.0)
-
-    def draw(frame: int) -> Array:
-        update(frame)
-        return np.asarray(stage.drawn())
-
-    return draw
-
-
 def megabytes(*packages: str) -> float:
     """How large packages are where they are installed [MB]."""
     return sum(os.path.getsize(file.locate()) for one in packages for file in files(one) or ()) / 1e6
@@ -178,7 +170,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         view, last = View(answer, camera), len(answer.t) - 1
         frames = np.linspace(0, last, FRAMES).astype(int)
         colours = [body.colour for body in view.shown]
-        ways = {"mjrock": filmed(view), "PyVista": plotter(view, colours, show_edges=True)[1]}
+        ways = {"mjrock": view.drawn, "PyVista": plotter(view, colours, show_edges=True)[1]}
         if not args.quick:  # a process chooses how MuJoCo draws before it imports it
             ways["MuJoCo"] = rendered(view)
         found = {way: timed(draw, frames) for way, draw in ways.items()}
