@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import os
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -21,6 +20,7 @@ import numpy as np
 from tqdm import tqdm
 
 import mjrock as mr
+from mjrock import machine
 from mjrock.study.matching.match import Combination, combinations
 from scripts.shared import cli
 
@@ -98,7 +98,7 @@ def carried_out(work: tuple[Callable[..., Row], tuple[Any, ...], Mapping[str, An
 
 def everywhere(name: str, works: Sequence[tuple[Callable[..., Row], tuple[Any, ...], Mapping[str, Any]]]) -> list[Row]:
     """All walls of a table, on all cores."""
-    with ProcessPoolExecutor(os.cpu_count()) as pool:
+    with ProcessPoolExecutor(machine.cores()) as pool:
         return list(tqdm(pool.map(carried_out, works, chunksize=4), total=len(works), desc=name, disable=None))
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -20,6 +19,7 @@ from mujoco import rollout
 from numpy.typing import NDArray
 
 import mjrock as mr
+from mjrock import machine
 from scripts.shared import cli, paper
 from scripts.studies.second_opinion import facade
 
@@ -86,7 +86,7 @@ def elsewhere(package: str, text: str) -> str:
 def main(argv: Sequence[str] | None = None) -> None:
     """Time them."""
     args, lines = cli.parser(__doc__, "plain_throughput").parse_args(argv), []
-    out, cores = cli.folder(args.out), os.cpu_count() or 1
+    out, cores = cli.folder(args.out), machine.cores()
     texts = {
         "wall of Figure 3": (wall_text(), 2000, 16),
         "facade of 29 blocks": (mr.mjcf_of(facade(), None, 1e-3, collisions=True), 200, 4),

@@ -45,7 +45,7 @@ def campaign(count: int, solver: str) -> float:
     with tempfile.TemporaryDirectory() as folder:
 
         def spent(some: list[mr.Analysis], name: str) -> float:
-            return cli.seconds(lambda: mr.campaign(some, Path(folder) / name, workers=os.cpu_count()))
+            return cli.seconds(lambda: mr.campaign(some, Path(folder) / name, workers=int(os.environ[CORES])))
 
         few, every = spent(tasks[: count // 4], "few.sqlite"), spent(tasks, "all.sqlite")
         return (every - few) / (count - count // 4)
@@ -111,6 +111,8 @@ SMALL_WALLS = {"wall of 18 blocks, 1 s, explicit steps": 2.5, "the same as it fa
 CAMPAIGNS = {"campaign, rocking theory, a wall": "analytical", "campaign, MuJoCo, a wall": "MuJoCo"}
 SET_UPS = {f"set-up of {count} blocks, explicit steps": count for count in (50, 1000, 2000, 4000)}
 """Processor time of each; the first one warms up, and is the only one of the quick mode."""
+CORES = "SPEED_CORES"
+"""Environment variable with the cores for the campaigns of a version; an earlier one does not know a quota of them."""
 SIZES = {"analytical": (2000, 100), "MuJoCo": (160, 8)}
 """Walls of a campaign, in full and in the quick mode."""
 
@@ -132,8 +134,9 @@ def serve() -> None:
 class Version:
     """A version of the package in a process of its own."""
 
-    def __init__(self, tree: Path, script: str = __file__) -> None:
+    def __init__(self, tree: Path, script: str = __file__, cores: int = 1) -> None:
         self.environment = os.environ | {"PYTHONPATH": f"{tree}{os.pathsep}{ROOT}", "MJROCK_INTERPRET": "0"}
+        self.environment[CORES] = str(cores)
         command = [sys.executable, script, "--serve"]
         self.process = subprocess.Popen(
             command, env=self.environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -205,6 +208,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     if args.serve:
         serve()
         return
+    from mjrock import machine  # which an earlier version has not
+
     out = cli.folder(args.out)
     repeats = 1 if args.quick else 25
     rows: list[list[object]] = []
@@ -215,13 +220,14 @@ def main(argv: Sequence[str] | None = None) -> None:
 
     with tempfile.TemporaryDirectory() as folder:
         there = ROOT if args.quick else unpacked(args.against, Path(folder))
-        versions = Version(ROOT), Version(there)
+        cores = 1 if args.quick else machine.cores()
+        versions = Version(ROOT, cores=cores), Version(there, cores=cores)
         try:
             campaigns = list(CAMPAIGNS)[: 1 if args.quick else None]
             for task in tqdm((*CALLS, *SMALL_WALLS, *campaigns), desc="tasks", disable=None, leave=False):
                 size = SIZES[CAMPAIGNS[task]][args.quick] if task in CAMPAIGNS else 0
                 count = (1 if args.quick else 3) if task in CAMPAIGNS else repeats
-                if task not in CAMPAIGNS:
+                if task not in CAMPAIGNS and not args.quick:
                     for version in versions:
                         version.seconds(task)
                 found = [[version.seconds(task, size) for version in versions] for _ in range(count)]

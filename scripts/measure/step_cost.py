@@ -32,6 +32,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.setup import setup_of
 from mjrock.machine import cores
+from mjrock.plotting.style import legend_below
 from scripts.measure import speed
 from scripts.measure.steps import floor as step_floor
 from scripts.measure.steps.tasks import K_SPACE, MORTAR, PUSH, STEPS, STEPS_BEFORE, THEORY, case_of, stepped
@@ -251,7 +252,8 @@ def figure_of(costs: Sequence[StepCost], numbers: Sequence[int]) -> Figure:
         ax.set_xlabel("contact lines [-]")
         ax.grid(alpha=0.3)
     axes[0].set_ylabel("time of a step [µs]")
-    axes[0].legend(frameon=False, fontsize=7)
+    handles, labels = axes[0].get_legend_handles_labels()
+    legend_below(figure, handles, labels, len(labels), fontsize=9)
     return figure
 
 

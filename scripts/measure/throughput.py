@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 import mjrock as mr
+from mjrock import machine
 from scripts.shared import cli, suite
 from scripts.shared.paper import FIGURE_3, K_N
 
@@ -120,7 +121,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         mr.campaign(cases("analytical", int(args.worker[0])), args.worker[1])
         return
     out = cli.folder(args.out)
-    store, cores = out / "throughput.sqlite", os.cpu_count() or 1
+    store, cores = out / "throughput.sqlite", machine.cores()
     sizes = {"analytical": 1_000 if args.quick else 10_000, "MuJoCo": 20 if args.quick else 2_000}
     rows: list[list[object]] = []
     undisturbed = ""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import importlib.util
 import math
-import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -22,6 +21,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import mjrock as mr
+from mjrock import machine
 from scripts.measure.plain_throughput import at_once, starts_of, timed
 from scripts.shared import cli, paper
 from scripts.studies.second_opinion import facade
@@ -148,7 +148,7 @@ def lacking(device: str) -> str:
 
 def speeds(scenes: dict[str, Plain], sizes: Sequence[int], device: str, quick: bool) -> str:
     """The table of steps a second."""
-    cores, rows = os.cpu_count() or 1, []
+    cores, rows = machine.cores(), []
     for name, plain in scenes.items():
         one, all_cores = (in_c(plain, threads, quick) for threads in (1, cores))
         rows.append([name, "C, one core", f"{one:.3g}", "1", f"{one / all_cores:.2g}"])

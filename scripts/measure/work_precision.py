@@ -27,7 +27,7 @@ import numpy as np
 from tqdm import tqdm
 
 import mjrock as mr
-from mjrock import plotting
+from mjrock import machine, plotting
 from mjrock.contacts.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.model import Engine
 from mjrock.engine.rows import inverse_weights
@@ -431,7 +431,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     lines_out = [
         cli.table(header, rows),
         "",
-        f"machine: {platform.machine()}, {os.cpu_count()} cores, MuJoCo {mujoco.__version__}",
+        f"machine: {platform.machine()}, {machine.cores()} cores, MuJoCo {mujoco.__version__}",
     ]
     fixed = [m for m in {p.method for p in points} if m.startswith("fixed, ")]
     for label in TARGETS:
