@@ -7,7 +7,6 @@ import html
 import json
 import zlib
 from collections.abc import Iterator
-from functools import cached_property
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -27,14 +26,14 @@ from ..result.ties import link_ends
 from .bodies import ends_of
 from .forces import LARGE, LONGEST, NOTHING, DrawnForces, edges_of
 from .picture import kind, picture
+from .solids import SUNK
 
 Json = dict[str, object]
 """An object in the data of the page."""
 FINE, COARSE = 2.0**-20, 2.0**-13
 """Steps in which places are kept over the extent of the blocks [-], and of rotations; the same for forces."""
-ON_LEVEL, SUNK = 1e-3, 0.05
-"""Largest height of ground above the lowest corner, and largest depth of blocks below its top with which the ground is
-drawn beyond its edge, over the extent of the blocks [-]."""
+ON_LEVEL = 1e-3
+"""How far the ground is drawn below its top, and forces before the blocks, over the extent of the blocks [-]."""
 AROUND = 0.6
 """How far around the blocks at rest the camera looks at those that move, over their extent [-]."""
 BEYOND = 1.3
@@ -102,7 +101,7 @@ class Page:
         self.t = response.t[samples]
         self.moving = response.moving.at(samples)
         self.bodies = bodies_of(self.moving, response.velocity[samples])
-        self.solids = self.case.rest_geometry.solids
+        self.solids, self.grounds = self.case.rest_geometry.solids, self.moving.are_ground
         free = [body for body in self.bodies if not body.fixed]
         self.low, self.high = ends_of(np.concatenate([body.rest + body.corners for body in free]))
         self.reached = ends_of(np.concatenate([ends_of(body.placed(body.corners)) for body in free]))
@@ -113,9 +112,7 @@ class Page:
     def run(self) -> Json:
         """All that the script of the page needs."""
         room = AROUND * self.extent
-        beside = [
-            body.rest + body.corners for i, body in enumerate(self.bodies) if body.fixed and i not in self.grounds
-        ]
+        beside = [one.rest + one.corners for i, one in enumerate(self.bodies) if one.fixed and not self.grounds[i]]
         low, high = ends_of(np.concatenate([*self.reached[:, None], *beside]))
         low, high = np.maximum(low, self.low - room), np.minimum(high, self.high + room)
         moves = [i for i, body in enumerate(self.bodies) if body.moves]
@@ -151,7 +148,7 @@ class Page:
                 edges = self._rounded(creases_of(solid.parts))
                 shapes.append({"corners": corners, "faces": body.faces, "edges": edges})
             look = {"colour": None if body.fixed else body.colour.tolist()}
-            look["kind"] = "ground" if i in self.grounds else "supports" if body.fixed else "blocks"
+            look["kind"] = "ground" if self.grounds[i] else "supports" if body.fixed else "blocks"
             named = {"name": body.name, "mass": self._mass(solid), "shape": number}
             bodies.append({**named, "rest": self._rounded(body.rest), **look})
         return {"bodies": bodies, "shapes": shapes}
@@ -160,22 +157,11 @@ class Page:
         """Mass of a block with what is added to it [kg], None of what a wall stands on."""
         return None if solid.block is None else float(f"{self.case.masses[solid.block]:.6g}")
 
-    @cached_property
-    def grounds(self) -> dict[int, Array]:
-        """Corners of the ground [m], by the numbers of its bodies.
-
-        Ground is what has the lowest top of the fixed bodies that stay where they are, if it is below all that moves.
-        """
-        fixed = {i: body.rest + body.corners for i, body in enumerate(self.bodies) if body.fixed and not body.moves}
-        tops = {i: float(corners[:, 2].max()) for i, corners in fixed.items()}
-        level = min([float(self.low[2]), *tops.values()]) + ON_LEVEL * self.extent
-        return {i: fixed[i] for i, top in tops.items() if top <= level}
-
     def _ground(self) -> Json | None:
         """The ground as a disc that reaches beyond all blocks, or None where blocks fall past the edge of it."""
-        if not self.grounds:
+        if not self.grounds.any():
             return None
-        corners = np.concatenate([*self.grounds.values()])
+        corners = np.concatenate([one.rest + one.corners for i, one in enumerate(self.bodies) if self.grounds[i]])
         level = float(corners[:, 2].max())
         if self.reached[0, 2] < level - SUNK * self.extent:
             return None

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.masonry import Masonry
-from ..quantities import Array, Flags, Integers, keep, require_array, require_within
+from ..quantities import Array, Integers, keep, require_array, require_within
 from ..result.bodies import BodyMotion
 from ..result.response import Response
 from ..result.ties import link_ends
@@ -121,15 +121,7 @@ class Solids:
     @property
     def shown(self) -> Integers:
         """Numbers of the blocks that are drawn as bodies: all but the ground, fixed ones too."""
-        return np.flatnonzero(~self.are_ground)
-
-    @cached_property
-    def are_ground(self) -> Flags:
-        """Which blocks are ground, shape (blocks,): fixed ones below all that move, which are not moved themselves."""
-        blocks, moved = self.masonry.blocks, {support.block for support in self.case.supports}
-        lowest = min(float(blocks[i].corners[:, 2].min()) for i in self.masonry.free) + 1e-3
-        below = [block.fixed and bool(block.corners[:, 2].max() <= lowest) for block in blocks]
-        return np.array([low and name not in moved for low, name in zip(below, self.masonry.names, strict=True)])
+        return np.flatnonzero(~self.moving.are_ground)
 
     @cached_property
     def facets(self) -> Facets:
@@ -169,7 +161,8 @@ class Solids:
     @cached_property
     def ground(self) -> Ground | None:
         """The ground, which reaches beyond all corners; None where there is none, or blocks fall past its edge."""
-        tops = [float(self.masonry.blocks[i].corners[:, 2].max()) for i in np.flatnonzero(self.are_ground).tolist()]
+        grounds = np.flatnonzero(self.moving.are_ground).tolist()
+        tops = [float(self.masonry.blocks[i].corners[:, 2].max()) for i in grounds]
         low, high = self.extent()
         size = float((high - low).max())
         if not tops or self.reached[0, 2] < max(tops) - SUNK * size:

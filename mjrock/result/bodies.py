@@ -15,11 +15,13 @@ from ..geometry.poses import displaced, rotated, rotations
 from ..problem.masonry.case import AnyCase
 from ..problem.masonry.masonry import Masonry
 from ..problem.wall.rest_geometry import JointFrames, in_space
-from ..quantities import Array, Integers, require_within
+from ..quantities import Array, Flags, Integers, require_within
 from ..scene.tints import colours_of
 
 SHORT_WAY = 1e-6
 """Half the time over which the velocity of a support is taken [s]."""
+LEVEL = 1e-3
+"""Height up to which fixed bodies lie on one level, over the extent of the free ones [-]."""
 
 
 class Body(NamedTuple):
@@ -96,6 +98,20 @@ class BodyMotion:
     def poses(self) -> Array:
         """Poses of all blocks, shape (n, blocks, 3) or (n, blocks, 7)."""
         return np.stack([self.pose_of(block) for block in range(len(self.case.centroids))], axis=1)
+
+    @cached_property
+    def are_ground(self) -> Flags:
+        """Which bodies are ground, shape (bodies,).
+
+        Of the fixed bodies that stay where they are, it is those with the lowest top, unless a free body is below it.
+        """
+        solids = self.case.rest_geometry.solids
+        ends = [(corners.min(axis=0), corners.max(axis=0)) for corners in (one.corners + one.rest for one in solids)]
+        free = np.array([end for end, one in zip(ends, solids, strict=True) if not one.fixed])
+        stays = [one.fixed and self.case.support_of(one.block) is None for one in solids]
+        tops = np.where(stays, [float(high[2]) for _, high in ends], np.inf)
+        low, high = free[:, 0].min(axis=0), free[:, 1].max(axis=0)
+        return np.asarray(tops <= min(low[2], tops.min()) + LEVEL * float((high - low).max()))
 
     def displaced(self, block: int | None, points: Array) -> Array:
         """Displacement from rest of points of a block, or of the ground [m], shape (n, m, d).

@@ -191,6 +191,18 @@ def test_what_has_sunk_below_the_ground_is_hidden_and_fixed_blocks_are_grey():
     assert red == green == blue
 
 
+@pytest.mark.parametrize(("lowest", "grounds"), [(0.5, ["ground"]), (-2.0, [])], ids=["stands", "hangs below"])
+def test_ground_is_what_lies_lowest_in_a_picture_and_in_the_browser(lowest, grounds):
+    """A plinth on the ground is none, and nothing is where a block is below all that is fixed."""
+    plinth = mr.Polyhedron.box((1, 1, 0.5), (0, 0, 0.25), fixed=True, name="plinth")
+    block = mr.Polyhedron.box((1, 1, 1), (0, 0, lowest + 0.5), name="block")
+    solids = posed(mr.Masonry((GROUND, plinth, block), xi=0), REST[:1])
+    names = np.array(solids.masonry.names)
+    assert [*names[solids.moving.are_ground]] == grounds
+    assert [*names[solids.shown]] == [name for name in names if name not in grounds]
+    assert (solids.ground is None) == (grounds == [])
+
+
 def test_blocks_that_fall_past_the_edge_of_the_ground_leave_it_as_it_is():
     solids = posed(MASONRY, moved(place=(9.0, 0.0, -3.0)))
     assert solids.ground is None
