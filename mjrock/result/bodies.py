@@ -20,7 +20,7 @@ from ..scene.tints import colours_of
 
 SHORT_WAY = 1e-6
 """Half the time over which the velocity of a support is taken [s]."""
-LEVEL = 1e-3
+SAME_LEVEL = 1e-3
 """Height up to which fixed bodies lie on one level, over the extent of the free ones [-]."""
 
 
@@ -111,7 +111,7 @@ class BodyMotion:
         stays = [one.fixed and self.case.support_of(one.block) is None for one in solids]
         tops = np.where(stays, [float(high[2]) for _, high in ends], np.inf)
         low, high = free[:, 0].min(axis=0), free[:, 1].max(axis=0)
-        return np.asarray(tops <= min(low[2], tops.min()) + LEVEL * float((high - low).max()))
+        return np.asarray(tops <= min(low[2], tops.min()) + SAME_LEVEL * float((high - low).max()))
 
     def displaced(self, block: int | None, points: Array) -> Array:
         """Displacement from rest of points of a block, or of the ground [m], shape (n, m, d).
