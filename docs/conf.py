@@ -242,6 +242,8 @@ def small_pictures(app: Any) -> None:
         picture.save(HERE / "auto_examples" / "images" / "thumb" / f"sphx_glr_{name}_thumb.png")
 
 
+COMMAND = re.compile(r'<code class="(?=[^>]*><span class="pre">(?:python|mjrock|pip|make)</span> )')
+"""Code within a sentence that is a command, which goes on the next line as a whole where it does not fit."""
 SHOWN = PUBLIC | {name: f"mjrock.blocks.{name}" for name in mjrock.blocks.__all__}
 BACK = re.compile(r"(?<=#)mjrock(?!\.plotting\.)(?:\.[a-z_]+)*\.(\w+)(?=\">\[docs\])")
 """From the source of a function or class back to its text. Sphinx takes one module for all names of a file."""
@@ -251,6 +253,8 @@ def finished(app: Any, page: str, template: str, context: dict[str, Any], doctre
     """Load pictures of the gallery below the first as they come into sight, and say what a link to a page shows."""
     body = THUMBNAIL.sub(lambda found: f'<img alt="{THUMBNAILS[found[1]].label}" ', context.get("body") or "")
     body = re.sub(r"<td>(?=<p>[^\s<]{1,12}</p>)", '<td class="short">', body)  # 5.8e-04 is not broken at its hyphen
+    body = COMMAND.sub('<code class="command ', body)
+    body = re.sub(r'<span class="pre">(?=[^<-]{0,12}-[^<]{0,12}</span>)', '<span class="pre short">', body)  # nor is -m
     body = BACK.sub(lambda found: SHOWN.get(found[1], found[0]), body)
     first, *others = re.split(r"(?=<img )", body)
     above, others = "".join([first, *others[:1]]), others[1:]

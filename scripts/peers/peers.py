@@ -1,6 +1,7 @@
 """The reference wall in the codes that a user would pick instead: error of |e| against wall time, each at its best.
 
-Stock MuJoCo, PyBullet, OpenSeesPy and Siconos run in processes of their own. One that is not installed is skipped.
+Stock MuJoCo, PyBullet, OpenSeesPy and Siconos run in processes of their own. One that is not installed is skipped,
+unless the folder has its numbers already: these are not written over.
 Errors are the worst of the first rebounds (four two-sided, two one-sided) over three releases. They are measured
 against the contact law with the same springs and dashpots, solved by SciPy, and against rocking theory. Times are the
 least of several runs, over the simulated time. Writes peers.csv, peers.png and peers.txt, and prints the table.
@@ -231,8 +232,26 @@ def missing() -> dict[str, str]:
     for code, name in NEEDS.items():
         if not (found_by_debian(name) if code in DEBIAN else importlib.util.find_spec(name) is not None):
             how = f"apt-get install {DEBIAN[code]} gcc" if code in DEBIAN else "pip install pybullet openseespy"
-            said[code] = f"{name} is not installed: skipped ({how})"
+            said[code] = f"{name} is not installed, it needs {how}"
     return said
+
+
+def keep_peers(table: Path, absent: dict[str, str]) -> None:
+    """Refuse to write over a table that has peers which are not installed.
+
+    Raises:
+        RuntimeError: with what each of them needs.
+    """
+    stored = table.read_text(encoding="utf-8").splitlines() if table.is_file() else []
+    labels = {line.split(",")[1] for line in stored}
+    lost = {one.code: absent[one.code] for one in SETUPS if one.code in absent and plain(one.label) in labels}
+    if lost:
+        raise RuntimeError(f"{table} has numbers that would be lost; take another --out:\n" + "\n".join(lost.values()))
+
+
+def plain(cell: object) -> str:
+    """A cell without commas, as NumPy reads no quoted ones."""
+    return str(cell).replace(",", " and")
 
 
 def found_by_debian(name: str) -> bool:
@@ -299,6 +318,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     args = cli.parser(__doc__, "peers").parse_args(argv)
     out = cli.folder(args.out)
     absent = missing()
+    keep_peers(out / "peers.csv", absent)
     sides = (("one-sided", True), ("two-sided", False))
     problems = [Problem(label, side_stop=side_stop, quick=args.quick) for label, side_stop in sides]
     found = list(points(problems, absent, args.quick))
@@ -312,14 +332,13 @@ def main(argv: Sequence[str] | None = None) -> None:
         ]
         for p in found
     ]
-    plain = [[str(cell).replace(",", " and") for cell in row] for row in rows]  # NumPy reads no quoted commas
     drawn = [(p.case, p.setup.label, p.seconds, p.law, p.theory) for p in found if math.isfinite(p.theory)]
     plotting.save(accuracy.peers(drawn, TOLD), out / "peers.png")
     lines = [summary(problem.label, found) for problem in problems]
     lines.append(
         "\n".join([f"mjrock {mr.__version__}, accuracy 1e-3 is its default", *versions(absent), *absent.values()])
     )
-    cli.report(out / "peers", "\n\n".join(lines), header, plain)
+    cli.report(out / "peers", "\n\n".join(lines), header, [[plain(cell) for cell in row] for row in rows])
 
 
 def versions(absent: dict[str, str]) -> list[str]:

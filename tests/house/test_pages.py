@@ -421,6 +421,7 @@ def test_the_documentation_builds_without_a_warning_and_needs_no_network_to_be_r
     home = (tmp_path / "html" / "index.html").read_text(encoding="utf-8")
     assert weight_of(tmp_path / "html", home) < 1.5e6
     assert 'property="og:image"' in home
+    assert re.search(r'<code class="command .*><span class="pre">python</span> <span class="pre short">-m</span>', home)
     assert (tmp_path / "html" / "card.png").stat().st_size > 5e4
     gallery = (tmp_path / "html" / "gallery.html").read_text(encoding="utf-8")
     assert gallery.count("<img ") - gallery.count('<img loading="lazy"') <= 2  # the mark, and the first picture

@@ -45,6 +45,15 @@ def test_a_peer_that_is_not_installed_is_skipped(two_sided, monkeypatch):
     assert {point.setup.code for point in peers.points([two_sided], absent, quick=True)} == {""}
 
 
+def test_numbers_of_a_peer_that_is_not_installed_are_not_written_over(tmp_path, monkeypatch):
+    monkeypatch.setattr(peers, "missing", lambda: {peers.SICONOS: "siconos is not installed"})
+    table = tmp_path / "peers.csv"
+    table.write_text("case,setup\none-sided,mjrock\ntwo-sided,Siconos and restitution typed in\n")
+    with pytest.raises(RuntimeError, match=r"peers\.csv has numbers that would be lost; .*\nsiconos is not installed"):
+        peers.main(["--out", str(tmp_path)])
+    peers.keep_peers(table, {peers.BULLET: "pybullet is not installed"})
+
+
 def test_a_trembling_peak_counts_once_and_a_fallen_wall_does_not_rebound(two_sided):
     case = two_sided.cases[0]
     t = np.arange(0, 6, 5e-4)
