@@ -90,9 +90,9 @@ if TYPE_CHECKING:
     from .result.problem import scene_of
     from .result.response import MasonryResponse, Response, load
     from .result.rocking import Impact
-    from .scene.fixed_step import automatic_timestep
     from .scene.masonry import masonry_scene
     from .scene.scene import Scene
+    from .scene.time_step import automatic_timestep
     from .scene.wall import wall_scene
     from .study.analysis import Analysis, MasonryAnalysis
     from .study.campaign.campaign import campaign, results

@@ -192,6 +192,10 @@ class Within(NamedTuple):
     whole: bool = False
     infinite: bool = False
 
+    def up_to(self, high: float) -> Within:
+        """The part of the range up to another number."""
+        return self._replace(high=min(self.high, high))
+
     def checked(self, name: str, value: object) -> float:
         """The value as a float or an integer; raises as `require_within` and `require_whole`."""
         if self.infinite and require_real(name, value) == math.inf:

@@ -18,10 +18,11 @@ from ..result.motion import OutputStep, required_spacing
 from ..result.problem import problem_of, required_start
 from ..result.response import End, Response, State, recorded
 from ..result.ties import warn_of_ties
+from ..scene.time_step import EXPLICIT_STEP, required_timestep
 from .response import Run, response_of
 from .search.overlap import checked_overlap
 from .setup import Setup, continued, setup_of_problem, with_motion_damping
-from .step_length import TimeGrid, TimeStep, required_timestep
+from .step_length import TimeGrid, TimeStep
 from .system import Books, Samples
 from .time_integration import Integration, integrate, warn_if_long
 
@@ -99,7 +100,7 @@ def solve_explicit(
     require_flag("forces", forces)
     if threads is not None:
         threads = require_whole("threads", threads, 1, MOST_THREADS)
-    timestep = required_timestep(timestep, case.duration)
+    timestep = required_timestep(timestep, EXPLICIT_STEP, case.duration)
     spacing = required_spacing(output_step, case.duration)
     state = None if start is None else required_start(start, case, remembers=True)
     if start is None:

@@ -17,8 +17,8 @@ from ..result.motion import SampledMotion, thinned
 from ..result.reading import BesidePoses, Reading
 from ..result.response import End, Response
 from ..result.ties import Plastic, plastic_of, ties_message
-from ..scene.fixed_step import ENERGY_GAIN
 from ..scene.scene import Scene
+from ..scene.time_step import ENERGY_GAIN
 from .kinds.link import Kind
 from .kinds.ties import Ties
 from .rows import Row, Rows

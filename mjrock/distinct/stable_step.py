@@ -1,7 +1,7 @@
 """The longest stable step: from the highest eigenvalues of stiffness and of damping over the masses.
 
 They are taken with every contact closed, and need not belong to one mode. The formula is that of
-`scene.explicit_step`. Contacts that are found later are softened for the step of the run, see `softening`.
+`scene.time_step`. Contacts that are found later are softened for the step of the run, see `softening`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ..linear import block_diagonal, rates_of, times
 from ..problem.masonry.blocks.joints_in_space import axes_across
 from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
-from ..scene.explicit_step import stable_step
+from ..scene.time_step import stable_step
 from .rotation import roots_of_masses
 from .rows import Rows
 from .system import System

@@ -31,15 +31,13 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ..problem.masonry.laws.joint_law import largest_stiffness
-from ..quantities import Array, Within
+from ..quantities import Array
 from ..result.motion import intervals
-from ..scene.explicit_step import STEP_TAKEN, warn_if_tiny
+from ..scene.time_step import EXPLICIT_STEP, STEP_TAKEN, warn_if_tiny
 from .stable_step import longest_step, rates_of_links, stiffest_lines
 from .system import System
 
-VALID = Within(1e-12, 1, "s")
-"""Range of a requested step."""
-TimeStep = Annotated[float | None, VALID]
+TimeStep = Annotated[float | None, EXPLICIT_STEP]
 """Length of a step [s], None for the default one."""
 
 SHARE_OF_A_WALL = 0.05
@@ -201,13 +199,6 @@ class StepLength(NamedTuple):
                 "stiffest contacts and the strongest dashpots allow"
             )
         warn_if_tiny(timestep, self.default)
-
-
-def required_timestep(timestep: TimeStep, duration: float) -> float | None:
-    """The requested step, which is at most the duration [s], or None."""
-    if timestep is None:
-        return None
-    return VALID._replace(high=min(VALID.high, duration)).checked("timestep", timestep)
 
 
 class TimeGrid(NamedTuple):

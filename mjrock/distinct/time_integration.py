@@ -13,7 +13,7 @@ import numpy as np
 from ..bars import Bar
 from ..compiled import for_types_of
 from ..quantities import warn_of
-from ..scene.explicit_step import stepping_seconds
+from ..scene.time_step import stepping_seconds
 from .kinds.own import OwnLaws
 from .kinds.own_links import OwnLinks
 from .loop import Clock, advance

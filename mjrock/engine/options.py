@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ..method import Method
-from ..quantities import Within, keep, keep_declared, require_flag, require_kind, require_size, require_within
-from ..result.motion import OutputStep
+from ..quantities import Within, keep, keep_declared, require_flag, require_kind, require_size
+from ..result.motion import OutputStep, required_spacing
+from ..scene.time_step import MUJOCO_STEP, required_timestep
 
-FixedStep = Annotated[float | None, Within(1e-9, 1, "s")]
+FixedStep = Annotated[float | None, MUJOCO_STEP]
 """A step that MuJoCo keeps to; None lets the steps fit the motion."""
 Accuracy = Annotated[float, Within(1e-8, 0.1)]
 """Relative tolerance of fitted steps."""
@@ -50,12 +51,12 @@ class Options:
         if self.coulomb is not None:
             keep(self, coulomb=require_flag("coulomb", self.coulomb))
         if self.output_step is not None:
-            keep(self, output_step=require_within("output_step", self.output_step, 1e-9, self.duration, "s"))
+            keep(self, output_step=required_spacing(self.output_step, self.duration))
+        keep(self, timestep=required_timestep(self.timestep, MUJOCO_STEP, self.duration))
         if self.timestep is None:
             samples = self.duration / (self.output_step or SPACING)
             require_size("the samples of this answer", samples, "raise output_step or follow it for less")
         else:
-            keep(self, timestep=require_within("timestep", self.timestep, 1e-9, min(1.0, self.duration), "s"))
             steps = self.duration / self.timestep
             require_size("the steps of this run", steps, "take a longer timestep, or fitted steps")
 

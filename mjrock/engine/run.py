@@ -15,9 +15,9 @@ from ..result.reading import Reading
 from ..result.response import Response
 from ..result.ties import Plastic, plastic_of, ties_message
 from ..scene.course import Course
-from ..scene.fixed_step import sound_timestep
 from ..scene.potential import breaks
 from ..scene.scene import Scene
+from ..scene.time_step import sound_timestep
 from .energy_work import ground_work, ledger
 from .forces import kept_forces
 from .model import SimulationError

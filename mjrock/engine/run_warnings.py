@@ -12,9 +12,8 @@ from ..problem.masonry.case import AnyCase
 from ..quantities import warn_of
 from ..result.ledger import warn_if_open
 from ..result.response import Response
-from ..scene.explicit_step import STEP_TAKEN, stable_step, stepping_seconds
-from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
+from ..scene.time_step import STEP_TAKEN, sound_timestep, stable_step, stepping_seconds
 from .energy_work import contact_work
 from .record import Steps
 from .rows import points_of

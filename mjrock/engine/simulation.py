@@ -18,9 +18,8 @@ from ..result.problem import Problem, problem_of, require_in_text, required_star
 from ..result.response import End, Response, State, recorded
 from ..result.ties import warn_of_ties
 from ..scene.course import Course
-from ..scene.explicit_step import warn_if_tiny
-from ..scene.fixed_step import sound_timestep
 from ..scene.scene import Scene
+from ..scene.time_step import sound_timestep, warn_if_tiny
 from .mjcf import pair_rows
 from .model import engine_of
 from .options import Accuracy, FixedStep, NewmarkBeta, Options

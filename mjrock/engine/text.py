@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase, MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import require_flag, require_kind, require_within
+from ..quantities import require_flag, require_kind, within_ranges
 from ..result.problem import problem_of
+from ..scene.time_step import MUJOCO_STEP
 from .model import released_mjcf
+from .options import NewmarkBeta
 from .plain.run import PlainModel, require_plain
 
 
+@within_ranges
 def mjcf_of(
-    case: AnyCase, contacts: Contacts | None, timestep: float, *, newmark_beta: float = 0.25, collisions: bool = False
+    case: AnyCase,
+    contacts: Contacts | None,
+    timestep: Annotated[float, MUJOCO_STEP],
+    *,
+    newmark_beta: NewmarkBeta = 0.25,
+    collisions: bool = False,
 ) -> str:
     """The model of a case as MJCF text; the same arguments give the same bytes.
 
@@ -37,8 +47,6 @@ def mjcf_of(
         ValueError: if the contacts do not fit the case, if the masonry does not stand, or for a value outside its
             range.
     """
-    timestep = require_within("timestep", timestep, 1e-9, 1.0, "s")
-    newmark_beta = require_within("newmark_beta", newmark_beta, 0.0, 10.0)
     problem = problem_of(case, contacts)
     if require_flag("collisions", collisions):
         require_plain(case)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..quantities import Array, require_reals, shown, warn_of
-from ..scene.fixed_step import ENERGY_GAIN
+from ..scene.time_step import ENERGY_GAIN
 
 
 class StepError(RuntimeError):

@@ -50,7 +50,9 @@ TIME_ROUNDING = 1e-12
 """Part of an interval that counts as rounding, over the number of intervals [-]."""
 
 
-OutputStep = Annotated[float | None, Within(1e-9, 1e6, "s")]
+SPACINGS = Within(1e-9, 1e6, "s")
+"""Range of a requested spacing of samples."""
+OutputStep = Annotated[float | None, SPACINGS]
 """Largest spacing of the samples of an answer."""
 RelativeError = Annotated[float, Within(1e-14, 0.1)]
 """Relative tolerance of an integration."""
@@ -60,7 +62,7 @@ def required_spacing(output_step: OutputStep, duration: float, otherwise: float 
     """The requested largest spacing of samples, checked; `otherwise` where none is [s]."""
     if output_step is None:
         return min(otherwise, duration)
-    return require_within("output_step", output_step, 1e-9, duration, "s")
+    return SPACINGS.up_to(duration).checked("output_step", output_step)
 
 
 def intervals(duration: float, spacing: float) -> int:

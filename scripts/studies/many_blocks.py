@@ -27,7 +27,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.plotting.style import BLUE, GREEN, ORANGE, Look, below_figure
-from mjrock.scene.explicit_step import STEP_TAKEN
+from mjrock.scene.time_step import STEP_TAKEN
 from scripts.shared import cli
 
 UNIT = (0.4, 0.2)

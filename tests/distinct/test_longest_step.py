@@ -9,7 +9,7 @@ from scipy.sparse import csr_array
 
 import mjrock as mr
 from mjrock.distinct import stable_step as eigenvalues
-from mjrock.scene.explicit_step import stable_step
+from mjrock.scene.time_step import stable_step
 
 MASS, SIDE = 2000.0, 1.0
 """Mass [kg] and side [m] of a cube."""

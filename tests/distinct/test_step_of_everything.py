@@ -12,7 +12,7 @@ from mjrock.distinct.kinds.law import JointLaw
 from mjrock.distinct.kinds.link import INFINITE_IN_LAW, Table
 from mjrock.distinct.kinds.lists import KINDS
 from mjrock.distinct.stable_step import longest_step
-from mjrock.scene.explicit_step import stable_step
+from mjrock.scene.time_step import stable_step
 
 FAR = box(-80, 80, -60, -59, fixed=True)
 POST = box(60, 60.3, -59, -58.7)

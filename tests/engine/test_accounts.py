@@ -13,7 +13,7 @@ from mjrock.engine.energy_work import ledger
 from mjrock.engine.model import released_mjcf
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
-from mjrock.scene.fixed_step import ENERGY_GAIN
+from mjrock.scene.time_step import ENERGY_GAIN
 from mjrock.scene.wall import wall_scene
 
 SQUAT = mr.Block.from_size(2.0, 2.0)

@@ -13,7 +13,7 @@ from mjrock.engine.run_warnings import (
     warn_if_plain_is_slow,
     warn_if_slow,
 )
-from mjrock.scene.explicit_step import RIGID_IN_SPACE, RIGID_LINE, SPRUNG_IN_SPACE, SPRUNG_LINE, STEP_TAKEN
+from mjrock.scene.time_step import RIGID_IN_SPACE, RIGID_LINE, SPRUNG_IN_SPACE, SPRUNG_LINE, STEP_TAKEN
 from scripts.measure.masonry_precision import PULSE, column
 
 ARCH = mr.Masonry.arch(5.0, 0.75, voussoirs=12)

@@ -13,7 +13,7 @@ from mjrock.engine import run as engine_run
 from mjrock.engine.model import Engine
 from mjrock.method import METHOD
 from mjrock.result.ledger import StepError
-from mjrock.scene.fixed_step import ENERGY_GAIN
+from mjrock.scene.time_step import ENERGY_GAIN
 from mjrock.scene.wall import inner_friction
 from scripts.shared.paper import K_N
 

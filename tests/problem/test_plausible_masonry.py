@@ -10,7 +10,7 @@ from everyday import slow
 from masonry_blocks import GROUND, box, columns
 
 import mjrock as mr
-from mjrock.scene.explicit_step import warn_if_tiny
+from mjrock.scene.time_step import warn_if_tiny
 
 STACK = columns(3)
 BLOCK = mr.Masonry.box((0.6, 0.4, 3.0), k_n=1e9)
