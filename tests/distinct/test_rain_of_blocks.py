@@ -7,7 +7,7 @@ from masonry_blocks import box
 
 import mjrock as mr
 
-SCENES = range(150)
+SCENES = range(50)
 K_N = 1e10
 """On which blocks of 0.1 to 0.4 m that land with some m/s overlap by less than 1 % [N/m3]."""
 

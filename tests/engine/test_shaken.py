@@ -78,14 +78,15 @@ def test_a_wall_that_falls_from_where_it_hardly_moved_takes_no_more_steps_for_mo
 @pytest.mark.slow
 @pytest.mark.parametrize("sides", records_accuracy.SIDES)
 def test_peaks_under_records(sides):
-    """Against a hundredth of the accuracy: 0.5 % in the median and 7 % in nine of ten two-sided, 1 % one-sided.
+    """Against a tenth of the accuracy: 0.5 % in the median and 7 % in nine of ten two-sided, 1 % one-sided, on soft to
+    stiff bases together.
 
     Two-sided rocking multiplies an error on its way, see docs/solvers.md.
     """
     side_stop = records_accuracy.SIDES[sides]
-    most = 0.01 if side_stop else 0.07
+    errors = []
     for k_n in records_accuracy.BASES:
-        runs = records_accuracy.references(k_n, side_stop, 8 if side_stop else 16, 10.0)
-        row = records_accuracy.measured(sides, k_n, ("MuJoCo", "default"), mr.simulate, runs)
-        assert records_accuracy.quantile(row.errors, 0.5) < 5e-3
-        assert records_accuracy.quantile(row.errors, 0.9) < most
+        runs = records_accuracy.references(k_n, side_stop, 4 if side_stop else 8, 10.0)
+        errors.append(records_accuracy.measured(sides, k_n, ("MuJoCo", "default"), mr.simulate, runs).errors)
+        assert records_accuracy.quantile(errors[-1], 0.5) < 5e-3
+    assert records_accuracy.quantile(np.concatenate(errors), 0.9) < (0.01 if side_stop else 0.07)

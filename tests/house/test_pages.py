@@ -6,7 +6,6 @@ import itertools
 import json
 import os
 import re
-import runpy
 import shutil
 import subprocess
 import sys
@@ -310,7 +309,11 @@ def test_every_public_name_is_in_the_reference():
 
 @pytest.mark.slow
 def test_the_church_example_goes_from_records_to_a_report(capsys):
-    names = runpy.run_path(str(EXAMPLES / "19_church_facade.py"))
+    """Its capacities are found to a fifth, not to a twentieth: in fewer runs of the same lines."""
+    text = (EXAMPLES / "19_church_facade.py").read_text(encoding="utf-8")
+    assert text.count("tolerance=0.05") == 1
+    names = {"__name__": "church"}
+    exec(compile(text.replace("tolerance=0.05", "tolerance=0.2"), "19_church_facade.py", "exec"), names)
     assert [len(components) for components in names["records"].values()] == 8 * [2]
     T, target = names["periods"], names["spectrum"](names["periods"])
     for components in names["scaled"].values():
