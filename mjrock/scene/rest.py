@@ -11,6 +11,10 @@ taken where less force is missing then. Elsewhere a step is taken that lowers th
 the shear stiffness of slipping contacts converges safely and slowly; dropping it converges fast or not at all. The
 share of the stiffness that is kept is therefore halved from pose to pose, and is whole again when more force is missing
 than before.
+
+A block that slips on both of its supports is dragged along by the one on which it presses more, and presses more on it
+then. More force is missing on the way to where it no longer slips there. A search that makes no progress for some poses
+therefore lets all that slips slide, whatever is missing, as far as the energy falls.
 """
 
 from __future__ import annotations
@@ -72,9 +76,10 @@ SOFT_STARTS = 100.0, 0.01, 0.1
 the undeformed pose, in turn [-]: stiff springs slip more on the way, as of blocks beside a rough wall."""
 POSES = 300
 """Most poses of a search."""
-STALLED, PROGRESS = 40, 0.01
-"""Poses in a row with no less force missing than before, after which a search ends, and how much less that has to be,
-over it [-]. Searches that find a pose have up to some 15 such poses in a row."""
+SLIDES, STALLED, PROGRESS = 20, 40, 0.01
+"""Poses in a row with no less force missing than before, from which on contacts that slip lend no stiffness, and after
+which a search ends, and how much less that has to be, over it [-]. Other searches that find a pose have up to some 15
+such poses in a row."""
 MEMORY_OF_BLOCK, MEMORY_OF_LINE = {False: 30e3, True: 70e3}, {False: 4e3, True: 6e3}
 """Memory of set-up for each block and for each of its contact lines, in the plane and in space [bytes]. The factors of
 the stiffness in the search for the pose of rest take the most. `scripts/measure/setup_cost.py` measures it."""
@@ -260,7 +265,9 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
                 reached, at = np.inf, poses
         if trial.left < (1 - PROGRESS) * reached:
             reached, at = trial.left, poses
-        if trial.left < last:
+        if poses - at >= SLIDES:
+            loose, share, least = LOOSE, 0.0, 0.0
+        elif trial.left < last:
             loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
         else:
             loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
