@@ -66,7 +66,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     for i, (name, camera) in enumerate(VIEWS):
         ax = figure.add_subplot(lowest[i], projection="3d")
         plotting.blocks(ax, vaults[name], joints=False, camera=camera)
-        ax.set_title(name if camera[0] > 0 else f"{name} from below", fontsize=10)
+        ax.set_title(name if camera[0] > 0 else f"{name} from below", fontsize=10, y=0.92)
     plotting.save(figure, out / "vaults.png")
     cli.report(out / "vaults", "\n".join(lines))
 
