@@ -111,10 +111,13 @@ def drawn(found: dict[int, mr.Collapse]) -> Figure:
         without_axes(ax)
     walls = [wall(number) for number in found]
     ends = [np.concatenate([masonry.blocks[i].corners for i in masonry.free]) for masonry in walls]
-    wide, high = 0.6 * max(float(np.ptp(own[:, 0])) for own in ends) + 0.3, max(ax.get_ylim()[1] for ax in used)
-    for ax, own in zip(used, ends, strict=True):  # one scale, and one level of the ground
+    wide = 0.6 * max(float(np.ptp(own[:, 0])) for own in ends) + 0.3
+    highs = [max(ax.get_ylim()[1] for ax in row if ax in used) for row in axes]
+    for i, (ax, own) in enumerate(zip(used, ends, strict=True)):  # one scale, and one level of the ground in a row
         middle = float(own[:, 0].max() + own[:, 0].min()) / 2 + 0.1
-        ax.set(xlim=(middle - wide, middle + wide), ylim=(-GROUND, high))
+        ax.set(xlim=(middle - wide, middle + wide), ylim=(-GROUND, highs[i // axes.shape[1]]))
+    used[0].get_gridspec().set_height_ratios([high + GROUND for high in highs])
+    figure.set_figheight(figure.get_figheight() * (0.2 + 0.8 * float(np.mean(highs)) / max(highs)))  # 0.2: texts
     bar = AnchoredSizeBar(used[0].transData, 1.0, "1 m", "upper right", frameon=False, sep=4)
     used[0].add_artist(bar)
     return figure
