@@ -22,7 +22,7 @@ from .declarations import REQUIRED, Key, Maker, maker_of
 from .documents import UnwrittenError, mechanism_table, values_of
 from .mechanisms import Mechanism, mechanisms_of
 from .reading import Reader, caused
-from .tables import LARGEST, AssessmentError, Document, Fault, Place, Table, line_of, lines_of, located, parsed
+from .tables import LARGEST, AssessmentError, Document, Fault, Place, Table, line_of, located, parsed
 
 if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
     from ..study.analysis import Analysis
@@ -55,7 +55,7 @@ class Assessment:
         project: title block of the report.
         name: of the file, for messages; empty where there is none.
         document: the tables of the file, as plain dictionaries and lists.
-        lines: the line of each key of the file.
+        source: the text of the file, for the lines of messages; empty where there is none.
         folder: what paths in the tables are relative to; None reads none.
         texts: further arguments of `report`.
         trials: of `[design]`, the key, its values and the method that counts; empty where the file has none.
@@ -67,7 +67,7 @@ class Assessment:
     project: Mapping[str, str] = field(default_factory=dict)
     name: str = field(default="", compare=False)
     document: Document = field(default_factory=dict, repr=False, compare=False)
-    lines: Mapping[Place, int] = field(default_factory=dict, repr=False, compare=False)
+    source: str = field(default="", repr=False, compare=False)
     folder: Path | None = field(default=None, compare=False)
     texts: Mapping[str, Any] = field(default_factory=dict)
     trials: Mapping[str, Any] = field(default_factory=dict)
@@ -230,7 +230,7 @@ class Assessment:
 
     def _error(self, place: Place, message: str) -> AssessmentError:
         """An error at a table of the file."""
-        return AssessmentError((Fault(place, message, line_of(place, self.lines)),), self.name, self.language)
+        return AssessmentError((Fault(place, message, line_of(place, self.source)),), self.name, self.language)
 
 
 def place_of(text: str) -> Place:
@@ -315,14 +315,14 @@ def assessment_of_text(text: str, name: str = "", folder: Path | None = None) ->
         document = parsed(text)
     except AssessmentError as error:
         raise AssessmentError(error.faults, name) from None
-    return assessment_of(document, name, folder, lines_of(text))
+    return assessment_of(document, name, folder, text)
 
 
 def assessment_of(
     document: Document,
     name: str = "",
     folder: Path | None = None,
-    lines: Mapping[Place, int] | None = None,
+    source: str = "",
     *,
     confined: bool = False,
 ) -> Assessment:
@@ -332,13 +332,13 @@ def assessment_of(
         document: the tables.
         name: of their file, for messages.
         folder: what paths in them are relative to; None reads no path.
-        lines: the line of each key.
+        source: the text of their file, for the lines of messages.
         confined: whether a path that leads out of that folder is refused.
 
     Raises:
         AssessmentError: with all that is wrong.
     """
-    reader = Reader(folder, lines or {}, name, confined=confined)
+    reader = Reader(folder, source, name, confined=confined)
     top: Table = located(document)
     whole: dict[str, Any] = {}
     for name_of in OF_ALL.keys() & top.values.keys():
@@ -350,7 +350,7 @@ def assessment_of(
     if not mechanisms and not reader.faults:
         reader.refusal((), "{place} has no mechanism; give it a table [wall], or several under [mechanisms.NAME]")
     reader.require_sound()
-    rest: dict[str, Any] = {"lines": lines or {}, "folder": folder, "texts": texts, "trials": trials or {}}
+    rest: dict[str, Any] = {"source": source, "folder": folder, "texts": texts, "trials": trials or {}}
     rest["confined"] = confined
     return Assessment(mechanisms, name=name, document=document, **rest, **whole)
 

@@ -48,7 +48,7 @@ class Reader:
     Args:
         folder: what paths of other files are relative to; None where there is no file, and no path is read.
         confined: whether a path that leads out of that folder is refused.
-        lines: the line of each key.
+        text: of the file, for the lines of messages; empty where there is none.
         name: of the file, for messages.
 
     Attributes:
@@ -56,14 +56,14 @@ class Reader:
         language: of the file.
     """
 
-    def __init__(self, folder: Path | None, lines: Mapping[Place, int], name: str, *, confined: bool = False) -> None:
-        self.folder, self.lines, self.name, self.confined = folder, lines, name, confined
+    def __init__(self, folder: Path | None, text: str, name: str, *, confined: bool = False) -> None:
+        self.folder, self.text, self.name, self.confined = folder, text, name, confined
         self.faults: list[Fault] = []
         self.language = "en"
 
     def refuse(self, place: Place, message: str) -> None:
         """Keep what is wrong with a key or table."""
-        self.faults.append(Fault(place, message, line_of(place, self.lines)))
+        self.faults.append(Fault(place, message, line_of(place, self.text)))
 
     def refusal(self, place: Place, template: str, **values: object) -> RefusedError:
         """Keep what is wrong with a key or table, as the template of a message about its `place`; to be raised."""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import tomllib
+from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..quantities import Message
@@ -23,6 +26,9 @@ COMMA = re.compile(r"[^#\"'\[{]*=\s*[+-]?\d+,\d")
 """A line with a number that is written with a decimal comma."""
 AT = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
 """What `tomllib` says of the place of an error."""
+
+CLOSINGS = "", "]", "]]", "]]]", '"""', "'''", '"""]', "''']"
+"""What may close the last value of a text that ends within it: lists, or a text of several lines."""
 
 
 class Fault(NamedTuple):
@@ -157,117 +163,33 @@ def is_deep(document: Document) -> bool:
     return bool(level)
 
 
-class Scanner:
-    """Lines of the keys of a text that is valid TOML.
-
-    Args:
-        text: the text.
-
-    Attributes:
-        lines: the line of each key, table and item of a list, from 1 on.
-    """
-
-    SPACE = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
-    STRING = re.compile(r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'', re.DOTALL)
-    PART = re.compile(r"""[ \t]*("(?:\\.|[^"\\\n])*"|'[^'\n]*'|[A-Za-z0-9_-]+)[ \t]*""")
-    SCALAR = re.compile(r"[^,\]}#\n]*")
-
-    def __init__(self, text: str) -> None:
-        self.text, self.at = text.replace("\r\n", "\n"), 0
-        self.lines: dict[Place, int] = {}
-        self.counts: dict[Place, int] = {}
-        self._counted, self._line = 0, 1
-        table: Place = ()
-        while self._skip() < len(self.text):
-            if self.text.startswith("[[", self.at):
-                table = self._header(2)
-            elif self.text[self.at] == "[":
-                table = self._header(1)
-            else:
-                self._pair(table)
-
-    @property
-    def line(self) -> int:
-        """The line that it is at."""
-        self._line += self.text.count("\n", self._counted, self.at)
-        self._counted = self.at
-        return self._line
-
-    def _skip(self) -> int:
-        """Go on to the next character that counts."""
-        found = self.SPACE.match(self.text, self.at)
-        self.at = found.end() if found else self.at
-        return self.at
-
-    def _note(self, place: Place) -> None:
-        """The first line of a place, and of the tables that it is in."""
-        for end in range(1, len(place) + 1):
-            self.lines.setdefault(place[:end], self.line)
-
-    def _key(self) -> list[str]:
-        """The parts of a key with dots."""
-        parts: list[str] = []
-        while found := self.PART.match(self.text, self.at):
-            raw, self.at = found[1], found.end()
-            parts.append(next(iter(tomllib.loads(f"{raw} = 0"))))
-            if not self.text.startswith(".", self.at):
-                break
-            self.at += 1
-        return parts
-
-    def _header(self, brackets: int) -> Place:
-        """The place of a table whose head is next."""
-        self.at += brackets
-        *before, last = self._key()
-        self.at += brackets
-        place: Place = ()
-        for part in before:
-            place = self._last((*place, part))
-        place = (*place, last)
-        if brackets == 2:
-            self.counts[place] = self.counts.get(place, 0) + 1
-        place = self._last(place)
-        self._note(place)
-        return place
-
-    def _last(self, place: Place) -> Place:
-        """The last table of a list of them; another place as it is."""
-        return (*place, self.counts[place] - 1) if place in self.counts else place
-
-    def _pair(self, table: Place) -> None:
-        """A key and its value."""
-        place = (*table, *self._key())
-        self._note(place)
-        self.at = self.text.index("=", self.at) + 1
-        self._value(place)
-
-    def _value(self, place: Place) -> None:
-        """A value, with what is in it."""
-        self._skip()
-        if found := self.STRING.match(self.text, self.at):
-            self.at = found.end()
-        elif (opening := self.text[self.at]) in "[{":
-            self.at += 1
-            count = 0
-            while self.text[self._skip()] not in "]}":
-                if opening == "{":
-                    self._pair(place)
-                else:
-                    self._note((*place, count))
-                    self._value((*place, count))
-                    count += 1
-                if self.text[self._skip()] == ",":
-                    self.at += 1
-            self.at += 1
-        elif found := self.SCALAR.match(self.text, self.at):
-            self.at = found.end()
+@lru_cache(maxsize=32)
+def _so_far(text: str, count: int) -> dict[str, Any]:
+    """The tables of the first lines of a text that is valid TOML, without those at the end that are no TOML even with
+    what may close them."""
+    for end in range(count, 0, -1):
+        part = "\n".join(text.split("\n")[:end])
+        for closing in CLOSINGS:
+            with contextlib.suppress(tomllib.TOMLDecodeError):
+                return tomllib.loads(f"{part}\n{closing}")
+    return {}
 
 
-def lines_of(text: str) -> dict[Place, int]:
-    """The line of each key of a text that is valid TOML, from 1 on."""
-    return Scanner(text).lines
+def _has(document: Any, place: Place) -> bool:
+    """Whether tables have a key."""
+    for part in place:
+        try:
+            document = document[part]
+        except (LookupError, TypeError):
+            return False
+    return True
 
 
-def line_of(place: Place, lines: Mapping[Place, int]) -> int | None:
-    """The line of a place, or of the table that it would be in."""
-    return next((lines[place[:end]] for end in range(len(place), 0, -1) if place[:end] in lines), None)
+def line_of(place: Place, text: str) -> int | None:
+    """The line of a key in a text that is valid TOML, from 1 on, or of the table that it would be in: the first line up
+    to which the text has it. None where it has neither."""
+    count = text.count("\n") + 1
+    there = next((place[:end] for end in range(len(place), 0, -1) if _has(_so_far(text, count), place[:end])), None)
+    if there is None:
+        return None
+    return bisect_left(range(count), True, lo=1, key=lambda lines: _has(_so_far(text, lines), there))
