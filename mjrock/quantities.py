@@ -13,43 +13,7 @@ from typing import Annotated, Any, TypeVar, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .contacts.checks import (
-    MOST_SAMPLES,
-    NAMED,
-    Array,
-    Flags,
-    Integers,
-    Message,
-    OneOf,
-    P,
-    Result,
-    Within,
-    alternatives,
-    brief,
-    declared,
-    is_iterable,
-    keep,
-    keep_declared,
-    listed,
-    named,
-    reason,
-    require_array,
-    require_flag,
-    require_kind,
-    require_plain,
-    require_real,
-    require_reals,
-    require_row,
-    require_size,
-    require_text,
-    require_whole,
-    require_within,
-    short_repr,
-    shown,
-    spelt,
-    warn_of,
-    within_ranges,
-)
+from .contacts.checks import *
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2], in every solver and in the generated model."""
