@@ -4,7 +4,7 @@ An Axes is the first argument, or `ax`, and may be left out: `save(pushover(curv
 that imports matplotlib.
 """
 
-from .animation import animate, animate_bodies
+from .animation import animate
 from .browser import view
 from .histories import acceleration, comparison, displacement, energy, grid, history, rotation, ties
 from .masonry import blocks, mechanism, thrust
@@ -26,7 +26,7 @@ from .style import PALETTE, STYLES, Drawing, save
 from .wall import sketch
 
 __all__ = [
-    "PALETTE", "STYLES", "Drawing", "acceleration", "animate", "animate_bodies", "blocks", "comparison", "design",
+    "PALETTE", "STYLES", "Drawing", "acceleration", "animate", "blocks", "comparison", "design",
     "displacement", "energy", "fragility", "grid", "history", "incremental", "mechanism", "moment_rotation",
     "overturning_map", "panels", "push", "pushover", "record", "rotation", "save", "single", "sketch", "spectra",
     "thresholds", "thrust", "ties", "tornado", "view",

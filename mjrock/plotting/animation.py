@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import base64
-import html
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
-from io import BytesIO
 from pathlib import Path
 from shutil import which
 from typing import Any, ClassVar
 
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
+from matplotlib.animation import FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -183,46 +179,6 @@ class MovieWriter(FFMpegWriter):
         return "ffmpeg"
 
 
-class PageWriter(HTMLWriter):
-    """Writes a page with the pictures of a stage."""
-
-    stage: Stage
-
-    def grab_frame(self, **options: object) -> None:
-        """Take the figure as it is now."""
-        file = BytesIO()
-        self.stage.picture().save(file, "PNG")
-        self._saved_frames.append(base64.encodebytes(file.getvalue()).decode("ascii"))  # type: ignore[attr-defined]
-
-    def finish(self) -> None:
-        """Write the page, and remove the folder for frames also where the disk is full."""
-        try:
-            super().finish()
-        finally:
-            self._tmpdir.cleanup()  # type: ignore[attr-defined]
-
-
-ICONS = {
-    "fa-minus": "&#8722;",
-    "fa-fast-backward": "|&#9664;&#9664;",
-    "fa-step-backward": "|&#9664;",
-    "fa-play fa-flip-horizontal": "&#9664;",
-    "fa-pause": "&#10074;&#10074;",
-    "fa-play": "&#9654;",
-    "fa-step-forward": "&#9654;|",
-    "fa-fast-forward": "&#9654;&#9654;|",
-    "fa-plus": "&#43;",
-}
-"""Characters on the buttons of matplotlib's player, in place of an icon font from the web."""
-
-
-def standalone(text: str, title: str) -> str:
-    """The page of matplotlib's player with characters for its icons, which it would load from the web."""
-    text = re.sub(r"<link\b[^>]*>", "", text)
-    text = re.sub(r'<i class="fa ([^"]*)"></i>', lambda icon: ICONS.get(icon[1], "&#8226;"), text)
-    return f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>{html.escape(title)}</title>\n{text}'
-
-
 def animate(
     response: Response,
     path: str | Path,
@@ -244,8 +200,8 @@ def animate(
 
     Args:
         response: of any solver.
-        path: where to: a .gif, an .mp4 or a .webm (both need the program ffmpeg, or `pip install imageio-ffmpeg`), or
-            an .html that needs no other file.
+        path: where to: a .gif, an .mp4 or a .webm (both need the program ffmpeg, or `pip install imageio-ffmpeg`).
+            `view` writes a page that plays in a browser.
         speed: time of the motion that passes in a second of the picture [-], 0.001 to 1000; 1 is real time.
         fps: frames a second [1/s], 1 to 120. In a GIF a frame lasts a whole number of hundredths of a second, at least
             two; the motion keeps its speed.
@@ -273,64 +229,22 @@ def animate(
         raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
     else:
         bodies = Bodies.of(response, magnify, limits)
-    case, histories = response.case, film_of(response.case).beside(response)
     acting = None
     if forces is not None:
         require_shown("forces", forces, response)
         acting = response, forces
-    return _film(bodies, path, histories, case, speed=speed, fps=fps, title=title, dpi=dpi, acting=acting)
-
-
-def animate_bodies(
-    t: ArrayLike,
-    outlines: Sequence[ArrayLike],
-    rests: ArrayLike,
-    poses: ArrayLike,
-    path: str | Path,
-    *,
-    fixed: Sequence[ArrayLike] = (),
-    speed: float = 1.0,
-    fps: float = 25.0,
-    magnify: float = 1.0,
-    title: str = "",
-    dpi: float = 100.0,
-    limits: ArrayLike | None = None,
-) -> Path:
-    """Write the motion of any rigid bodies in their plane as a moving picture.
-
-    The bodies and their motion `t`, `outlines`, `rests`, `poses` and `fixed` are those of
-    `mjrock.plotting.bodies.Bodies.loose`. All else, the path that is returned and the errors are those of `animate`.
-    """
-    bodies = Bodies.loose(t, outlines, rests, poses, magnify, fixed, limits)
-    return _film(bodies, path, [], None, speed=speed, fps=fps, title=title, dpi=dpi)
-
-
-def _film(
-    bodies: Bodies | Solids,
-    path: str | Path,
-    histories: Sequence[Drawing],
-    case: AnyCase | None,
-    *,
-    speed: float,
-    fps: float,
-    title: str,
-    dpi: float,
-    acting: tuple[Response, str] | None = None,
-) -> Path:
-    """Check, draw frame by frame, and write the file."""
     path = require_path("path", path)
     writer, interval = writer_for(path, require_within("fps", fps, 1.0, 120.0, "1/s"))
     speed = require_within("speed", speed, 1e-3, 1e3)
     times = frame_times(bodies.t, speed * interval)
     dpi = require_within("dpi", dpi, 20.0, 600.0)
     require_text("title", title)
-    figure, update = scene(bodies.at(times), histories, case, speed=speed, title=title, acting=acting)
-    return write(figure, update, len(times), path, writer, dpi, title)
+    histories = film_of(response.case).beside(response)
+    figure, update = scene(bodies.at(times), histories, response.case, speed=speed, title=title, acting=acting)
+    return write(figure, update, len(times), path, writer, dpi)
 
 
-def write(
-    figure: Figure, update: Update, count: int, path: Path, writer: AbstractMovieWriter, dpi: float, title: str = ""
-) -> Path:
+def write(figure: Figure, update: Update, count: int, path: Path, writer: GifWriter | MovieWriter, dpi: float) -> Path:
     """Write the frames of a scene, of which the last is shown for another second.
 
     Args:
@@ -339,26 +253,20 @@ def write(
         path: of the file, with the ending that the writer is for.
         writer: of `writer_for`.
         dpi: resolution [1/inch].
-        title: of a page, whose name is taken where it is empty.
     """
-    with replacing(path) as partial:
-        with writer.saving(figure, str(partial), dpi):
-            if isinstance(writer, GifWriter | PageWriter):
-                writer.stage = Stage(figure, dpi)
-                writer.stage.keep_colours(update, count)
-            for frame in counted(range(count), path.name, "frames"):
-                update(frame)
-                writer.grab_frame()
-            for _ in range(0 if isinstance(writer, GifWriter) else round(HELD * writer.fps)):
-                writer.grab_frame()  # a GIF gives its last frame a time instead
-        if path.suffix.lower() == ".html":
-            stem = path.stem.encode("utf-8", "replace").decode()  # a name of a file may hold any bytes
-            text = standalone(partial.read_text(encoding="utf-8"), title or stem)
-            partial.write_text(text, encoding="utf-8")
+    with replacing(path) as partial, writer.saving(figure, str(partial), dpi):
+        if isinstance(writer, GifWriter):
+            writer.stage = Stage(figure, dpi)
+            writer.stage.keep_colours(update, count)
+        for frame in counted(range(count), path.name, "frames"):
+            update(frame)
+            writer.grab_frame()
+        for _ in range(0 if isinstance(writer, GifWriter) else round(HELD * writer.fps)):
+            writer.grab_frame()  # a GIF gives its last frame a time instead
     return path
 
 
-def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
+def writer_for(path: Path, fps: float) -> tuple[GifWriter | MovieWriter, float]:
     """The writer for a file of this ending, and how long a frame is shown [s]."""
     match path.suffix.lower():
         case ".gif":
@@ -367,15 +275,11 @@ def writer_for(path: Path, fps: float) -> tuple[AbstractMovieWriter, float]:
         case ".mp4" | ".webm" as ending:
             if not MovieWriter.isAvailable():
                 needs = f"{ending} needs the program ffmpeg, which is not on the PATH"
-                raise RuntimeError(f"{path.name}: {needs}; pip install imageio-ffmpeg, or write a .gif or an .html")
+                raise RuntimeError(f"{path.name}: {needs}; pip install imageio-ffmpeg, or write a .gif")
             codec, *options = CODECS[ending]
             extra = ["-pix_fmt", "yuv420p", *options]
             return MovieWriter(fps=fps, codec=codec, extra_args=extra), 1 / fps  # type: ignore[arg-type]
-        case ".html":
-            interval = int(1000 / fps) / 1000  # a browser counts milliseconds
-            writer = PageWriter(JUST / interval, embed_frames=True, embed_limit=4096, default_mode="loop")  # type: ignore[arg-type]
-            return writer, interval
-    raise ValueError(f"path = {(path.name or str(path))!r} does not end in .gif, .mp4, .webm or .html")
+    raise ValueError(f"path = {(path.name or str(path))!r} does not end in .gif, .mp4 or .webm; view writes an .html")
 
 
 def frame_times(t: Array, step: float) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import cast
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -16,7 +15,7 @@ from matplotlib.patches import Polygon
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import ArrayLike
 
-from ..problem.masonry.case import AnyCase, MasonryCase
+from ..problem.masonry.case import MasonryCase
 from ..problem.wall.effect import Anchored
 from ..quantities import (
     Array,
@@ -24,15 +23,12 @@ from ..quantities import (
     Integers,
     require_array,
     require_kind,
-    require_reals,
-    require_row,
     require_within,
-    shown,
 )
 from ..result.bodies import BodyMotion
 from ..result.response import Response
 from ..result.ties import LinkEnd, elongation_of, link_ends
-from ..scene.tints import FIXED_COLOUR, TINTS, colours_of, distinct_tints
+from ..scene.tints import FIXED_COLOUR, TINTS, colours_of
 from .style import Look, figure_of, plain_names
 
 STONE, GROUND_COLOUR, FORCE = TINTS[0], FIXED_COLOUR, "#a8201a"
@@ -79,51 +75,6 @@ def required_limits(limits: ArrayLike | None, axes: str) -> Array | None:
     return checked
 
 
-def _outlines(name: str, given: object) -> tuple[Array, ...]:
-    """Outlines as arrays of shape (corners, 2)."""
-    if isinstance(given, np.ndarray) and given.ndim:
-        given = list(given)
-    if not isinstance(given, Sequence) or isinstance(given, str):
-        raise TypeError(f"{name} = {shown(given)} is not a sequence of outlines")
-    outlines = []
-    for i, outline in enumerate(given):
-        corners = require_reals(f"{name}[{i}]", outline, "corners x, z [m], shape (n, 2)")
-        outlines.append(require_array(f"{name}[{i}]", corners, (len(np.atleast_1d(corners)), 2)))
-    return tuple(outlines)
-
-
-@dataclass(frozen=True, eq=False)
-class LooseBodies:
-    """Bodies of the plane without joints, in place of a case.
-
-    Args:
-        outlines: corners of each about its centroid, at rest [m], shape (corners, 2) each.
-        rests: centroid of each at rest [m], shape (bodies, 2).
-        grounds: corners of fixed bodies [m], which are numbered after the others.
-    """
-
-    outlines: tuple[Array, ...]
-    rests: Array
-    grounds: tuple[Array, ...]
-
-    @property
-    def fixed(self) -> dict[int, Array]:
-        """Corners of the fixed bodies [m], by their numbers."""
-        return dict(enumerate(self.grounds, len(self.outlines)))
-
-    @property
-    def centroids(self) -> Array:
-        """Centroids of all [m], shape (all, 2); fixed ones are given about the origin."""
-        return np.concatenate([self.rests, np.zeros((len(self.grounds), 2))])
-
-    def body_of(self, block: int) -> int | None:
-        """The number of a body, None of a fixed one."""
-        return block if block < len(self.outlines) else None
-
-    def support_of(self, block: int) -> None:
-        """Nothing moves what is fixed."""
-
-
 @dataclass(frozen=True, eq=False)
 class Bodies:
     """Rigid bodies of the plane, as a picture shows them.
@@ -153,42 +104,6 @@ class Bodies:
         geometry = moving.case.rest_geometry
         free = [solid.body >= 0 for solid in geometry.solids]
         return cls(moving, colours_of(geometry)[free], required_limits(limits, "xz"))
-
-    @classmethod
-    def loose(
-        cls,
-        t: ArrayLike,
-        outlines: object,
-        rests: ArrayLike,
-        poses: ArrayLike,
-        magnify: float = 1.0,
-        fixed: object = (),
-        limits: ArrayLike | None = None,
-    ) -> Bodies:
-        """Bodies that are given one by one.
-
-        Args:
-            t: times [s], shape (n,), increasing.
-            outlines: corners of each body about its centroid, at rest [m], one array of shape (corners, 2) each.
-            rests: centroid of each body at rest, x and z [m], shape (bodies, 2).
-            poses: displacement x, z of each centroid from rest [m] and rotation [rad], shape (n, bodies, 3). A positive
-                rotation turns the top of a body to the right, towards positive x.
-            magnify: factor on the displacement of every point [-], 0.01 to 10000; 1 is true to scale.
-            fixed: outlines of fixed bodies, in place [m].
-            limits: see above.
-
-        Raises:
-            TypeError, ValueError: for arrays that do not fit together, or a factor outside its range.
-        """
-        times = require_row("t", t, "time [s]")
-        if not (np.diff(times) >= 0).all():
-            raise ValueError(f"t = {shown(t)} decreases; one row of increasing times [s] is needed")
-        free, stays = _outlines("outlines", outlines), _outlines("fixed", fixed)
-        magnify = require_within("magnify", magnify, 0.01, 1e4)
-        case = cast(AnyCase, LooseBodies(free, require_array("rests", rests, (len(free), 2)), stays))
-        moving = BodyMotion(case, times, require_array("poses", poses, (len(times), len(free), 3)), magnify)
-        colours = np.array([TINTS[tint] for tint in distinct_tints(len(free), ())])
-        return cls(moving, colours, required_limits(limits, "xz"))
 
     @property
     def t(self) -> Array:

@@ -20,6 +20,8 @@ import mjrock as mr
 from mjrock.plotting import animation
 from mjrock.plotting.bodies import Bodies
 from mjrock.quantities import Array
+from mjrock.result.bodies import BodyMotion
+from mjrock.scene.tints import TINTS, distinct_tints
 from scripts.shared import cli
 from scripts.shared.films import FPS, folder, told
 from scripts.shared.films import films as written
@@ -106,8 +108,10 @@ def main(argv: Sequence[str] | None = None) -> None:
     poses = np.concatenate([poses for _, poses in films], axis=1)
     poses[..., 1] += DROP * np.tile(HIGHEST, 2)
     ground = np.array([(-0.9, -0.06), (0.9, -0.06), (0.9, 0.0), (-0.9, 0.0)])
-    outlines = [box] * (2 * COUNT)
-    bodies = Bodies.loose(films[0][0], outlines, rests, poses, 1.0, [ground], [(-0.9, 0.9), (-0.2, 0.55)])
+    stones = [mr.Polygon(box + rest) for rest in rests]
+    case = mr.MasonryCase(mr.Masonry([*stones, mr.Polygon(ground, fixed=True)]), DURATION)
+    colours = np.array([TINTS[tint] for tint in distinct_tints(len(stones), ())])
+    bodies = Bodies(BodyMotion(case, films[0][0], poses), colours, np.array([(-0.9, 0.9), (-0.2, 0.55)]))
     labels = [f"{name}: sinks by {depth:.3g} mm" for name, depth in zip(NAMES, sunk[:, -1], strict=True)]
     lines += [told(written(lambda path: drawn(bodies, labels, path), out / "stack_before_and_after", DURATION))]
     cli.report(out / "stack_before_and_after", "\n".join(lines))

@@ -116,10 +116,7 @@ ENTRIES = {
     "Block, profile": entry(lambda z, t: mr.Block(1.0, 50.0, profile=[(0.0, 2.0), (z, t)]), z=100, t=1),
     "Block.from_size": entry(mr.Block.from_size, thickness=2, height=100, length=8, density=100, inset=0.5),
     "Block.from_slenderness": entry(mr.Block.from_slenderness, slenderness=100, R=50, length=8, density=100),
-    "Bodies": entry(
-        lambda magnify: Bodies.loose(TIMES, (np.eye(3, 2),), np.zeros((1, 2)), np.ones((3, 1, 3)), magnify),
-        magnify=100,
-    ),
+    "Bodies": entry(lambda magnify: Bodies.of(response(), magnify), magnify=100),
     "Bond": entry(
         mr.Bond, tension=2e5, cohesion=3e5, opening_energy=18.0, slip_energy=125.0, crushing=1e7, crushing_energy=5e3,
     ),

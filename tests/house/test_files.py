@@ -45,8 +45,7 @@ WRITERS = {
     "to_compas": ("a.json", BOX.to_compas),
     "report": ("a.html", lambda path: mr.report(CASE, answer(), path)),
     "save": ("a.png", lambda path: plotting.save(plotting.history(answer()), path)),
-    "animate, gif": ("a.gif", lambda path: plotting.animate(answer(), path, fps=2, dpi=30)),
-    "animate, html": ("b.html", lambda path: plotting.animate(answer(), path, fps=2, dpi=30)),
+    "animate": ("a.gif", lambda path: plotting.animate(answer(), path, fps=2, dpi=30)),
     "history of a campaign": ("a.npz", lambda path: write_arrays(path, t=np.random.default_rng(0).random(1000))),
 }
 """A name of a file, and what writes it, by writer."""
@@ -155,7 +154,7 @@ def test_a_folder_is_no_file(path, tmp_path, monkeypatch):
     for writer in ("Response.csv", "law.save", "to_obj"):
         with pytest.raises(IsADirectoryError, match=rf"'{path}'"):
             WRITERS[writer][1](path)
-    for writer in ("report", "save", "animate, gif"):
+    for writer in ("report", "save", "animate"):
         with pytest.raises(ValueError, match=rf"path = '{path}' "):
             WRITERS[writer][1](path)
     with pytest.raises(IsADirectoryError, match=rf"'{path}'"):

@@ -201,7 +201,7 @@ def difference(name, drawn):
 
 
 def test_every_public_picture_is_kept():
-    others = {"PALETTE", "STYLES", "Drawing", "save", "animate", "animate_bodies", "view"}
+    others = {"PALETTE", "STYLES", "Drawing", "save", "animate", "view"}
     assert set(plotting.__all__) - others == set(PICTURES) - {"blocks_in_space"} - OF_STUDIES
     assert {path.stem for path in FOLDER.glob("*.png")} == set(PICTURES)
 

@@ -233,7 +233,7 @@ def label_of(name, seed):
 
 def test_every_public_picture_is_tried():
     pictures = {name for name in plotting.__all__ if inspect.isfunction(getattr(plotting, name))}
-    assert pictures - {"animate", "animate_bodies", "save", "view"} == set(PICTURES)
+    assert pictures - {"animate", "save", "view"} == set(PICTURES)
 
 
 @pytest.mark.parametrize("name", PICTURES)
