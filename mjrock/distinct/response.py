@@ -166,6 +166,10 @@ def reading_of(run: Run) -> Reading:
     return run.setup.problem.read(run.scene, run.t, motion, released=run.setup.course.released, beside=beside)
 
 
+class EnergyGainError(RuntimeError):
+    """Energy has appeared from nowhere."""
+
+
 def require_sound(run: Run, step: float) -> None:
     """Raise a RuntimeError if energy appears from nowhere, or if the motion is not finite; warn if much appears at ends
     of faces, which have an account.
@@ -188,7 +192,8 @@ def require_sound(run: Run, step: float) -> None:
     try:
         require_no_gain(run.checked, there - work + left, scale)
     except StepError as gain:
-        raise RuntimeError(f"{gain} by t = {gain.t:.4g} s; {advice(step, 4 * gain.share, ENERGY_GAIN)}") from None
+        message = f"{gain} by t = {gain.t:.4g} s; {advice(step, 4 * gain.share, ENERGY_GAIN)}"
+        raise EnergyGainError(message) from None
     if -left.min() > RESIDUAL_WARNED_OF * scale:
         warn_of(
             f"contacts at ends of faces put in {-left.min():.3g} J, {-left.min() / scale:.1%} of the energy there was: "

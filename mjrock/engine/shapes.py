@@ -61,7 +61,7 @@ def world(scene: Scene) -> Iterator[str]:
     for name in sorted(faces, key=faces.__getitem__):
         if scene.contacts.face_body[faces[name]] == GROUND:
             height = float(scene.contacts.face_at[faces[name]][-1])
-            yield from _ground(scene, name, hidden=scene.freedom != PLANE and height in paved)
+            yield from _ground(scene, name, faces[name], hidden=scene.freedom != PLANE and height in paved)
             paved.add(height)
     for j, tint in enumerate(tints(scene)):
         yield from _body(scene, j, faces, tint)
@@ -136,12 +136,12 @@ def sites(scene: Scene, body: int, raised: float = 0.0) -> Iterator[str]:
         yield tag("site", name="origin")
 
 
-def _ground(scene: Scene, name: str, *, hidden: bool) -> Iterator[str]:
-    """A face of the ground as a plane. Level ground is seen as paving, any other face of the plane as a slab behind it.
+def _ground(scene: Scene, name: str, i: int, *, hidden: bool) -> Iterator[str]:
+    """The face of the ground that point i meets, as a plane.
 
-    In space no other face is seen, and of several faces at one height, which would flicker, only the first.
+    Level ground is seen as paving, any other face of the plane as a slab behind it. In space no other face is seen,
+    and of several faces at one height, which would flicker, only the first.
     """
-    i = scene.contacts.face_names.index(name)
     face, normal, radius = scene.contacts.face_at[i], scene.contacts.normal[i], scene.radius
     at = in_space(face - radius * normal, radius)
     layer = {"group": "3"} if hidden else {}
@@ -158,7 +158,7 @@ def _slab(scene: Scene, name: str, i: int, at: tuple[float, ...]) -> Iterator[st
     """The face of point i, which is not level, as a plane at a place, and the slab that is seen behind it."""
     x, z = scene.contacts.face_at[i]
     nx, nz = scene.contacts.normal[i]
-    met = np.array([face == name for face in scene.contacts.face_names])
+    met = np.array(scene.contacts.face_names) == name
     along = (scene.bodies.rest[scene.contacts.body] + scene.contacts.at)[met] - scene.contacts.face_at[i]
     places = along @ np.array([nz, -nx])
     half = max(0.5 * float(np.ptp(places)), SMALLEST_SLAB * scene.bodies.extent)

@@ -283,13 +283,15 @@ class ContactPoints:
     @cached_property
     def face_names(self) -> tuple[str, ...]:
         """Name of the face that each point meets: its joint, with a number where the points of a joint meet several."""
+        places = np.column_stack([self.face_body, self.face_at, self.normal]).tolist()
+        faces = [(name, *place) for name, place in zip(self.group, places, strict=True)]
         known: dict[tuple[object, ...], str] = {}
-        names = []
-        for name, body, face, normal in zip(self.group, self.face_body, self.face_at, self.normal, strict=True):
-            mark = (name, int(body), *face.tolist(), *normal.tolist())
-            number = sum(met[0] == name for met in known)
-            names.append(known.setdefault(mark, f"{name}_face_{number}" if number else name))
-        return tuple(names)
+        met: Counter[str] = Counter()
+        for face in dict.fromkeys(faces):
+            name = face[0]
+            known[face] = f"{name}_face_{met[name]}" if met[name] else name
+            met[name] += 1
+        return tuple(known[face] for face in faces)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
+from mjrock.problem.wall import plausibility
 from mjrock.study.intensity import ida
 
 WALL = mr.Block.from_size(0.9, 12.0, 10.0, 1900.0)
@@ -169,6 +170,13 @@ MISUSE = {
         r"of a wall of alpha = 0.08314 rad",
     ),
 }
+
+
+def test_a_dashpot_without_a_linear_part_is_doubted_by_its_force(monkeypatch):
+    """3e-3 N s2/m2 times the square of 3 m/s are little beside a wall of 2 MN."""
+    monkeypatch.setattr(plausibility, "resistance", lambda law, rate: 3e-3 * rate * rate)
+    with pytest.warns(mr.Implausible, match=r"its dashpot bears 0.0265 N at 3 m/s, .*: is it in N and m/s\?"):
+        with_effect(mr.Tie(8.0, 20e6))
 
 
 @pytest.mark.parametrize("name", MISUSE)

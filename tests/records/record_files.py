@@ -140,6 +140,10 @@ def written(path: Path, content: str | bytes) -> Path:
 
 def body(ending: str) -> str:
     """The samples in the rows of a format."""
-    if ending == "csv":
-        return "".join(f"{0.01 * i:.2f},{100 * x:g}\n" for i, x in enumerate(SAMPLES))
-    return "".join(f"{x * {'at2': 1, 'geonet': 1000}.get(ending, 100):g}\n" for x in SAMPLES)
+    scale = {"at2": 1, "geonet": 1000}.get(ending, 100)
+    return "".join(row(ending, 0.01 * i, f"{scale * x:g}") + "\n" for i, x in enumerate(SAMPLES))
+
+
+def row(ending: str, t: float, value: str, between: str = ",") -> str:
+    """The row of a sample in a format: its value as text, after its time [s] where the format has times."""
+    return f"{t:.2f}{between}{value}" if ending == "csv" else value

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from everyday import slow
 from offenders import not_refused
-from record_files import AT2, FORMATS, HEADS, NUMBERS, READ, SAMPLES, body, written
+from record_files import AT2, FORMATS, HEADS, NUMBERS, READ, SAMPLES, body, row, written
 
 NO_NUMBERS = (
         "0.02-05", "0.02E-02-3", "2-5", ".123E-020.456E-02", ".5E", ".5E+", "1.2.3", "0x1p3", "1_5", "1e999",
@@ -39,7 +39,7 @@ def test_what_is_no_number(tmp_path, ending):
         shown = ascii(value.replace(",", ".") if ending == "csv" else value)
         for i in (0, 2, 5):
             damaged = [*rows]
-            damaged[i] = f"{i / 100:.2f};{value}" if ending == "csv" else value
+            damaged[i] = row(ending, i / 100, value, ";")
             texts.append(head + "\n".join(damaged) + "\n")
             line = re.escape(f"a.{ending}: line {head.count(chr(10)) + 1 + i}: {shown}")
             complaints.append(f"{line}.* is not a finite number such as")
@@ -148,7 +148,7 @@ def test_utf_16_is_named(tmp_path, ending):
 @FORMATS
 def test_a_unit_off_by_a_thousand_warns(tmp_path, ending):
     scale = {"at2": 1e3, "geonet": 1e6}.get(ending, 1e5)
-    lines = (f"{0.01 * i:.2f},{scale * x:g}" if ending == "csv" else f"{scale * x:g}" for i, x in enumerate(SAMPLES))
+    lines = (row(ending, 0.01 * i, f"{scale * x:g}") for i, x in enumerate(SAMPLES))
     with pytest.warns(UserWarning, match=r"\w.* peaks at [\d.]+ m/s2 = [\d.]+ g; accelerations are in m/s2"):
         READ[ending](written(tmp_path / f"a.{ending}", HEADS[ending] + "\n".join(lines)))
 

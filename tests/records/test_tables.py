@@ -120,6 +120,12 @@ DOUBTS = {
         "t;a;v;d\n" + lines(T, A, A, A, between=";"), {}, r"line 2 has 4 columns: 0 't', 1 'a', .* as columns=\(0, 1\)",
     ),
     "three of accelerations": (lines(A, A[::-1], A), {"dt": 0.01}, r"line 1 has 3 columns; .* such as columns=0"),
+    "names in a file of one column": (
+        lines(A), {"columns": ("time", "EW")}, r"line 1 has one column, .* takes several; leave it out and give its t"
+    ),
+    "a name in a file without names": (
+        lines(T, A), {"columns": "EW"}, r"columns has 'EW'; the file has no names; give numbers, 0 to 1"
+    ),
     "a name that is not there": ("t,a\n" + lines(T, A, between=","), {"columns": "b"}, r"'b'; the names are 't', 'a'"),
     "a column that is not there": (lines(T, A), {"columns": 2, "dt": 0.01}, r"a number in columns = 2 is outside"),
     "rows without a step": (in_rows(5), {}, r"or dt= and columns='rows' for samples in rows"),

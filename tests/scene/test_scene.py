@@ -1,5 +1,6 @@
 """The scene: what it refuses, how its text is made, and that runs share what they can."""
 
+import dataclasses
 import math
 
 import mujoco
@@ -182,3 +183,14 @@ def test_a_wall_beside_a_stop_with_friction_rests_on_its_base(wall):
     x, _, theta = scene.at_rest[0]
     assert theta > 1e-5
     assert x == pytest.approx(math.sin(theta) * scene.bodies.rest[0, 1], abs=1e-8)
+
+
+def test_faces_are_numbered_within_their_joint():
+    """Three faces on each of two joints; the first has the name of the joint, and a face that comes again its own."""
+    lower = two_blocks().contacts
+    faces = [(float(i), 0.0) for i in (0, 1, 0, 2, 1, 1, 2, 0)]
+    repeated = "k", "c", "friction", "body", "at", "normal", "k_s", "area", "holds", "joint"
+    eight = {name: np.repeat(getattr(lower, name), 2, axis=0) for name in repeated}
+    named = dataclasses.replace(lower, **eight, face_body=[-1] * 8, face_at=faces)
+    expected = "foot", "foot_face_1", "foot", "foot_face_2", "middle", "middle", "middle_face_1", "middle_face_2"
+    assert named.face_names == expected

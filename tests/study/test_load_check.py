@@ -45,6 +45,16 @@ def test_a_horizontal_force_by_hand(solve):
         mr.load_check(result)
 
 
+@pytest.mark.parametrize(
+    ("bears", "call"),
+    [(WALL, r"mr\.pushover\(case\)"), (COLUMN, r"mr\.collapse_multiplier\(masonry\)"),
+     (mr.MasonryCase(COLUMN, 1.0), r"mr\.collapse_multiplier\(case\.masonry\)")],
+)  # fmt: skip
+def test_what_bears_is_no_answer(bears, call):
+    with pytest.raises(TypeError, match=rf"is what bears, and no answer; take mr\.load_check\({call}, demand\)"):
+        mr.load_check(bears, 0.19)
+
+
 def test_loads_that_grow_have_a_factor_of_one_as_their_demand():
     """A pull of 2 kN at 1 m turns the block about its edge: W 0.3 m over 2 kN m."""
     weight = 0.6 * 2.0 * 2000.0 * mr.GRAVITY

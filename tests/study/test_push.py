@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.explicit import solve_explicit
+from mjrock.distinct.response import EnergyGainError
 from mjrock.study.loading.push import BLOWS, ForceRun, Piece, warn_if_fast
 
 JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
@@ -356,16 +357,24 @@ def test_what_is_wrong_is_named(given, said):
         mr.push(panel(0.9), *given)
 
 
-def test_steps_that_gain_energy_are_told_with_what_a_push_takes(monkeypatch):
-    """A push has no argument timestep."""
+@pytest.mark.parametrize(
+    ("error", "swings"),
+    [
+        (EnergyGainError("0.4 J, 0.40% of the energy, appeared from nowhere by t = 2 s; take timestep = 1 s"), True),
+        (RuntimeError("the motion breaks down at t = 2 s; take a shorter timestep"), False),
+    ],
+)
+def test_steps_that_break_down_are_named_with_what_a_push_takes(monkeypatch, error, swings):
+    """A push has no argument timestep. Only steps that gain energy are those of masonry that swings."""
 
-    def gains(case, **options):
-        raise RuntimeError("0.4 J, 0.40% of the energy, appeared from nowhere by t = 2 s; take timestep = 1 s")
+    def breaks(case, **options):
+        raise error
 
-    monkeypatch.setattr("mjrock.study.loading.push.solve_explicit", gains)
-    with pytest.raises(RuntimeError, match=r"from nowhere by t = 2 s, in a piece .* local_damping = 0\.1") as told:
+    monkeypatch.setattr("mjrock.study.loading.push.solve_explicit", breaks)
+    with pytest.raises(type(error), match=r"t = 2 s, in a piece of the push of .* mm: ") as raised:
         mr.push(panel(0.9), 1, 0.1)
-    assert "timestep" not in str(told.value)
+    assert "timestep" not in str(raised.value)
+    assert ("swings; damp its motion by local_damping = 0.1" in str(raised.value)) is swings
 
 
 def test_an_angle_is_for_a_direction_in_space():

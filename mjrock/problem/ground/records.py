@@ -705,6 +705,10 @@ def _columns_of(found: RecordTable, wanted: TableOptions, dt: float | None) -> t
     """The accelerations by the number of their column, in the unit of the file, and their time step [s]."""
     if wanted.columns is not None:
         given = [wanted.columns] if isinstance(wanted.columns, int | str) else list(wanted.columns)
+        if len(given) > found.width == 1:
+            step = "" if dt else " and give its time step dt"
+            chosen = f"columns = {in_message(str(wanted.columns))}"
+            raise ValueError(f"line {found.places[0]} has one column, and {chosen} takes several; leave it out{step}")
         picked = [_number_of(found, column) for column in given]
     else:
         picked = list(range(found.width))
@@ -741,8 +745,9 @@ def _number_of(found: RecordTable, column: object) -> int:
         fit = [i for i, name in enumerate(names) if name.casefold() == column.strip().casefold()]
         if len(fit) == 1:
             return fit[0]
-    valid = ", ".join(map(in_message, found.names)) or "not in the file"
-    raise ValueError(f"columns has {in_message(column)}; the names are {valid}")
+    names = f"the names are {', '.join(map(in_message, found.names))}"
+    unnamed = f"the file has no names; give numbers, 0 to {found.width - 1}"
+    raise ValueError(f"columns has {in_message(column)}; {names if found.names else unnamed}")
 
 
 def _grid(time: Array) -> tuple[float, float]:

@@ -227,15 +227,15 @@ def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
 
 def _of_dashpot(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     """A doubt about the dashpot of a link, by its force at the speed sqrt(g t) of a wall of thickness t that falls."""
-    if not link.law.c > 0:
-        return ""
     speed, weight = math.sqrt(GRAVITY * room(link)[0]), whole.mass * GRAVITY
     force = resistance(link.law, speed)
-    if NEGLIGIBLE_SHARE * weight <= force <= EXCESSIVE * weight:
+    if not force > 0 or NEGLIGIBLE_SHARE * weight <= force <= EXCESSIVE * weight:
         return ""
-    unit = "kN s/m" if force < weight else "N s/m"
+    dashpot, unit = f"c = {link.law.c:g} N s/m", "kN s/m" if force < weight else "N s/m"
+    if not link.law.c > 0:
+        dashpot, unit = "its dashpot", "N and m/s"
     return (
-        f"{name}: c = {link.law.c:g} N s/m bears {force:.3g} N at {speed:.2g} m/s, at which the {whole.called} falls, "
+        f"{name}: {dashpot} bears {force:.3g} N at {speed:.2g} m/s, at which the {whole.called} falls, "
         f"and it weighs {weight:.3g} N: is it in {unit}?"
     )
 

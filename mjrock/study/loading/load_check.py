@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...problem.masonry.case import AnyCase
+from ...problem.masonry.case import AnyCase, MasonryCase
 from ...problem.masonry.limit.collapse import Collapse
-from ...quantities import require_kind, require_within
+from ...problem.masonry.masonry import Masonry
+from ...problem.wall.case import Case
+from ...quantities import require_kind, require_within, shown
 from .limit_analysis import LimitCurve
 from .mechanism_curve import warn_of_inner_edge
 from .push import Push
@@ -23,6 +25,12 @@ WHAT = {
     PushoverCurve: "push-over",
 }
 """What a verdict calls each."""
+ANSWERED_BY = {
+    Case: "mr.pushover(case)",
+    MasonryCase: "mr.collapse_multiplier(case.masonry)",
+    Masonry: "mr.collapse_multiplier(masonry)",
+}
+"""The call that gives an answer for what bears."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -99,6 +107,8 @@ def load_check(result: Borne, demand: float | None = None) -> LoadCheck:
         >>> mr.load_check(mr.collapse_multiplier(column), 0.15)
         <LoadCheck HOLDS: 0.2 for 0.15, limit analysis>
     """
+    if call := next((call for kind, call in ANSWERED_BY.items() if isinstance(result, kind)), None):
+        raise TypeError(f"result = {shown(result)} is what bears, and no answer; take mr.load_check({call}, demand)")
     require_kind("result", result, *WHAT)
     if isinstance(result, PushoverCurve):
         warn_of_inner_edge(result.case, result.peak)

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from ...bars import Bar
 from ...distinct.explicit import solve_explicit
+from ...distinct.response import EnergyGainError
 from ...notebook import NotebookPicture
 from ...problem.masonry.actuator import LARGEST_STROKE, Actuator
 from ...problem.masonry.case import MasonryCase
@@ -307,8 +308,9 @@ class PushRun:
         """The motion of a piece.
 
         Raises:
-            RuntimeError: where steps gain energy. They gain a share of what swings in each period, so that undamped
+            EnergyGainError: where steps gain energy. They gain a share of what swings in each period, so that undamped
                 masonry that has cracked gains much in a long piece.
+            RuntimeError: where the motion is not finite.
         """
         spacing = case.duration / (POINTS * SAMPLES)
         try:
@@ -322,10 +324,12 @@ class PushRun:
             )
         except RuntimeError as broken:
             what = str(broken).partition("; take ")[0]
-            raise RuntimeError(
-                f"{what}, in a piece of the push of {case.duration:.3g} s at {1e3 * self.level:.4g} mm: masonry that "
-                "has given way swings; damp its motion by local_damping = 0.1 or mass_damping = 5, or its joints by xi"
-            ) from None
+            piece = f"in a piece of the push of {case.duration:.3g} s at {1e3 * self.level:.4g} mm"
+            remedy = "make what drives it less stiff"
+            if isinstance(broken, EnergyGainError):
+                damped = "local_damping = 0.1 or mass_damping = 5, or its joints by xi"
+                remedy = f"masonry that has given way swings; damp its motion by {damped}"
+            raise type(broken)(f"{what}, {piece}: {remedy}") from None
 
     def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
         """How far the spring of the actuator is pressed at the samples [m], without the part of its dashpot."""

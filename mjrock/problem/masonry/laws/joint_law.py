@@ -80,7 +80,8 @@ def tangent_stiffness(row: LawRow, depth: Any) -> Any:
 
 @inlined
 def largest_stiffness(row: LawRow) -> Any:
-    """Largest stiffness of the spring along the normal for which steps are short enough [N/m]."""
+    """Largest stiffness of the spring along the normal at any depth that a run may reach [N/m]: steps are short enough
+    for it. A spring that stiffens without end has that at the largest depth for which the law holds."""
     return row.k
 
 
