@@ -42,7 +42,7 @@ def closed(u: Array | float) -> Array:
     return np.asarray(CRUSHING / np.sqrt(1 + 9 * (deep / H) ** 2) * deep**2 / H)
 
 
-def strip(k_s: float = K_S) -> mr.Masonry:
+def strip(k_s: float = K_S, points: int = POINTS) -> mr.Masonry:
     """Two halves between two floors."""
 
     def block(name: str, left: float, low: float, right: float, high: float) -> mr.Polygon:
@@ -57,13 +57,13 @@ def strip(k_s: float = K_S) -> mr.Masonry:
         block("floor above", -T, H, 2 * T, H + 0.2),
     ]
     bond = mr.Bond(0.0, 0.0, 1.0, 1.0, crushing=CRUSHING, crushing_energy=1e12)
-    return mr.Masonry(blocks, k_n=K, k_s=k_s, friction=0.7, xi=0.05, points=POINTS, bond=bond)
+    return mr.Masonry(blocks, k_n=K, k_s=k_s, friction=0.7, xi=0.05, points=points, bond=bond)
 
 
-def pushed(shares: Sequence[float] = SHARES, k_s: float = K_S) -> mr.Push:
+def pushed(shares: Sequence[float] = SHARES, k_s: float = K_S, points: int = POINTS) -> mr.Push:
     """The strip, pushed at the foot of its upper half."""
     jack = mr.Actuator("upper half", (0.0, 0.5 * H), 1, None, 1e9)
-    return mr.push(strip(k_s), jack, max(shares) * T, mass_damping=20.0)
+    return mr.push(strip(k_s, points), jack, max(shares) * T, mass_damping=20.0)
 
 
 def forces(push: mr.Push, shares: Sequence[float]) -> Array:
@@ -86,8 +86,9 @@ def drawn(push: mr.Push) -> Figure:
 def main(argv: Sequence[str] | None = None) -> None:
     """Push, print the table and draw."""
     args = cli.parser(__doc__, "arching").parse_args(argv)
-    out, shares = cli.folder(args.out), SHARES[:2] if args.quick else SHARES
-    push = pushed(shares)
+    out = cli.folder(args.out)
+    shares, points = (SHARES[:1], 5) if args.quick else (SHARES, POINTS)
+    push = pushed(shares, points=points)
     stiff = push if args.quick else pushed(shares, K)
     rows: list[list[object]] = []
     for share, found, other in zip(shares, forces(push, shares), forces(stiff, shares), strict=True):

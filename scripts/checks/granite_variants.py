@@ -35,6 +35,7 @@ from scripts.studies.granite_walls import (
 WALL = "WS250"
 PLACES = (2.0, 6.0, 20.0, 39.0)
 """Displacements at which forces are given [mm]."""
+ONE_BLOCK = "one block, no courses"
 VARIANTS: dict[str, Assumed] = {
     "as taken: rollers": ASSUMED,
     "load on a plate that slides on the beam": ASSUMED._replace(on_plate=1.0),
@@ -45,7 +46,7 @@ VARIANTS: dict[str, Assumed] = {
     "k_n half": ASSUMED._replace(stiffness=0.5 * STIFFNESS),
     "friction of the joints 0.5": ASSUMED._replace(friction=0.5),
     "joint on the floor ends 10 mm from the faces": ASSUMED._replace(inset=0.01),
-    "one block, no courses": ASSUMED._replace(courses=False),
+    ONE_BLOCK: ASSUMED._replace(courses=False),
     "16 lines a joint": ASSUMED._replace(points=16),
 }
 
@@ -78,7 +79,8 @@ def main(argv: Sequence[str] | None = None) -> None:
         "beside the test",
         "processor [s]",
     ]
-    for name, assumed in tqdm(list(VARIANTS.items())[: 1 if args.quick else None], disable=None, leave=False):
+    variants = [ONE_BLOCK] if args.quick else list(VARIANTS)
+    for name, assumed in tqdm([(name, VARIANTS[name]) for name in variants], disable=None, leave=False):
         push, took = pushed(LOADS[WALL], (0.0005 if args.quick else 0.04,), assumed)
         found = curve_of(push)
         top = found[:, 1].max()

@@ -55,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out, found, rows = cli.folder(args.out), dict[int, mr.Push](), list[list[object]]()
     for number in tqdm([1] if args.quick else list(PUBLISHED), desc="walls", disable=None, leave=False):
         masonry, published, begun = wall(number), PUBLISHED[number][1], time.process_time()
-        found[number] = mr.push(masonry, 1, 0.1 * FAR if args.quick else FAR, inertia=0.01 if args.quick else INERTIA)
+        found[number] = mr.push(masonry, 1, 0.03 * FAR if args.quick else FAR, inertia=0.01 if args.quick else INERTIA)
         peak = found[number].peak
         cells = [number, len(masonry.free), published, f"{peak:.4f}", f"{peak / published - 1:+.1%}"]
         rows.append([*cells, f"{found[number].inertia_share:.2%}", f"{time.process_time() - begun:.0f}"])

@@ -265,7 +265,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Measure, draw and print."""
     args = suite.parser(__doc__, "effect_costs").parse_args(argv)
     out = cli.folder(args.out)
-    motions = suite.motions(args.records, 2 if args.quick else 9)[: 2 if args.quick else None]
+    motions = suite.motions(args, 9, quick=2)
     pairs = [(motion, motions[(i + 1) % len(motions)]) for i, motion in enumerate(motions)]
     studied = {name: STUDIED[name] for name in ("bare", "all together")} if args.quick else STUDIED
     found = answers(studied, pairs[:1] if args.quick else pairs)

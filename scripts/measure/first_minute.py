@@ -98,9 +98,7 @@ def times(folder: Path, name: str) -> list[str]:
     """First answer, full speed, compiled first, stored, plain Python: of one problem [s]."""
     code = SET_UP.format(RUNS[name])
     emptied(folder)
-    (first,) = seconds(folder, code)
-    emptied(folder)
-    _, full = seconds(folder, code + UNTIL_STORED)
+    first, full = seconds(folder, code + UNTIL_STORED)
     emptied(folder)
     (compiled,) = seconds(folder, code, MJROCK_INTERPRET="0")
     (stored,) = seconds(folder, code)

@@ -91,7 +91,7 @@ def drawn(found: dict[tuple[str, float, bool], list[list[float]]], stiffnesses: 
     for ax, choice in zip(figure.subplots(1, 2, sharey=True), choices, strict=True):
         for side, dashes in ((False, "-"), (True, ":")):
             curves = list(zip(*found[choice, rotation, side], strict=True))
-            for i, (n, curve) in enumerate(zip(BLOCKS, curves, strict=True)):
+            for i, (n, curve) in enumerate(zip(BLOCKS[: len(curves)], curves, strict=True)):
                 colour = plotting.PALETTE[i % len(plotting.PALETTE)]
                 ax.plot(stiffnesses, curve, dashes, color=colour, marker="osD^"[i], markerfacecolor="none")
                 if choice == choices[0] and not side:
@@ -112,12 +112,12 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Measure, print and draw."""
     args = cli.parser(__doc__, "stack_losses").parse_args(argv)
     out = cli.folder(args.out)
-    stiffnesses = K_N[:1] if args.quick else K_N
+    stiffnesses, blocks = (K_N[:1], BLOCKS[:2]) if args.quick else (K_N, BLOCKS)
     found: dict[tuple[str, float, bool], list[list[float]]] = {}
     rows: list[list[object]] = []
     changes = []
     for choice, side in tqdm([(c, s) for c in CHOICES for s in (False, True)], disable=None, leave=False):
-        stacks = [[CHOICES[choice](n, k_n, side) for n in BLOCKS] for k_n in stiffnesses]
+        stacks = [[CHOICES[choice](n, k_n, side) for n in blocks] for k_n in stiffnesses]
         measured = {f"from {a:g} alpha": [[lost(made, a) for made in line] for line in stacks] for a in ROTATIONS}
         for a, values in zip(ROTATIONS, measured.values(), strict=True):
             found[choice, a, side] = values
@@ -131,7 +131,7 @@ def main(argv: Sequence[str] | None = None) -> None:
                 rows.append([choice, sides, name, f"{k_n:.0e}", *(f"{value:.3f}" for value in line)])
         fine = [[lost(made, accuracy=1e-5) for made in line] for line in stacks]
         changes.append(np.abs(np.subtract(fine, found[choice, ROTATIONS[0], side])).max())
-    header = ["joints", "sides", "impact", "k_n [N/m3]", *(f"{n} blocks" for n in BLOCKS)]
+    header = ["joints", "sides", "impact", "k_n [N/m3]", *(f"{n} blocks" for n in blocks)]
     text = cli.table(header, rows) + f"\nlargest change with accuracy 1e-5 for 1e-4: {max(changes):.1e}"
     plotting.save(drawn(found, stiffnesses), out / "stack_losses.png")
     cli.report(out / "stack_losses", text, header, rows)

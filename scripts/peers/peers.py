@@ -264,9 +264,9 @@ def found_by_debian(name: str) -> bool:
 
 def points(problems: Sequence[Problem], absent: dict[str, str], quick: bool) -> Iterator[Point]:
     """Every setup at every step."""
-    todo = [
-        (p, s, h) for p in problems for s in SETUPS if s.code not in absent for h in s.steps[: 2 if quick else None]
-    ]
+    setups = [setup for setup in SETUPS if setup.code not in absent]
+    steps = {setup: setup.steps[: (1 if setup.code else 2) if quick else None] for setup in setups}
+    todo = [(p, s, h) for p in problems for s in setups for h in steps[s]]
     for problem, setup, step in tqdm(todo, desc="peers", disable=None, leave=False):
         yield (theirs if setup.code else ours)(problem, setup, step)
 

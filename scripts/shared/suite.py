@@ -40,14 +40,20 @@ def parser(description: str | None, out: str, *, records: bool = True) -> argpar
     return made
 
 
-def motions(folder: Path | None, count: int = 10) -> list[mr.GroundMotion]:
-    """The records of a folder, or `count` synthetic ones."""
-    if folder is None:
-        return [mr.GroundMotion.synthetic(3.0, 15.0, seed=seed) for seed in range(count)]
-    files = sorted(path for path in folder.iterdir() if path.suffix.lower() in READERS)
+def synthetic(count: int, duration: float = 15.0) -> list[mr.GroundMotion]:
+    """Synthetic records of a duration [s]."""
+    return [mr.GroundMotion.synthetic(3.0, duration, seed=seed) for seed in range(count)]
+
+
+def motions(args: argparse.Namespace, count: int, quick: int) -> list[mr.GroundMotion]:
+    """The records of the folder that a script is given, or `count` synthetic ones; `quick` of them, and synthetic ones
+    that are short, in its quick mode."""
+    if args.records is None:
+        return synthetic(quick, 5.0) if args.quick else synthetic(count)
+    files = sorted(path for path in args.records.iterdir() if path.suffix.lower() in READERS)
     if not files:
-        raise ValueError(f"{folder} holds no record; the endings that are read are {', '.join(READERS)}")
-    return [READERS[path.suffix.lower()](path) for path in files]
+        raise ValueError(f"{args.records} holds no record; the endings that are read are {', '.join(READERS)}")
+    return [READERS[path.suffix.lower()](path) for path in files[: quick if args.quick else None]]
 
 
 def to_peak(motion: mr.GroundMotion, pga: float) -> mr.GroundMotion:

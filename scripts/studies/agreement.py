@@ -49,7 +49,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         build,
         side_stop=[side_stop for side_stop, _ in SIDES],
         wall=range(1 if args.quick else len(WALLS)),
-        motion=suite.motions(args.records, 1 if args.quick else 8),
+        motion=suite.motions(args, 8, quick=1),
         polarity=(0, 1),
         level=LEVELS[1:3] if args.quick else LEVELS,
         k_n=(0.0, *STIFFNESSES),  # zero stands for the rigid base of theory

@@ -106,28 +106,28 @@ def peak_in_theory(sides: str, motion: mr.GroundMotion, pga: float) -> float:
     return math.inf if found.outcome is mr.Outcome.OVERTURNED else float(np.abs(found.theta).max()) / BARE.alpha
 
 
-def overturning(falls: Callable[[float], bool]) -> float:
+def overturning(falls: Callable[[float], bool], rung: float) -> float:
     """The least intensity that overturns [g], by a ladder and by halving its last rung; MOST or more is infinite.
 
     The ladder is fine, since a façade can stand an intensity above one that overturns it.
     """
     high = LEAST
     while not falls(high):
-        high *= RUNG
+        high *= rung
         if high > MOST:
             return math.inf
-    low = high / RUNG
+    low = high / rung
     for _ in range(HALVINGS):
         middle = math.sqrt(low * high)
         low, high = (low, middle) if falls(middle) else (middle, high)
     return math.sqrt(low * high)
 
 
-def studied(sides: str, name: str, motion: mr.GroundMotion) -> Found:
+def studied(sides: str, name: str, motion: mr.GroundMotion, rung: float = RUNG) -> Found:
     """What one motion does to the façade."""
     models: list[Callable[[float], float]] = [lambda pga: peak_in_theory(sides, motion, pga)]
     models += [lambda pga, parts=parts: peak(parts, sides, motion, pga) for parts in (1, 2)]  # type: ignore[misc]
-    least = [overturning(lambda pga, of=of: math.isinf(of(pga))) for of in models]  # type: ignore[misc]
+    least = [overturning(lambda pga, of=of: math.isinf(of(pga)), rung) for of in models]  # type: ignore[misc]
     return Found(sides, name, tuple(least), tuple(of(SHARE * min(least)) for of in models))
 
 
@@ -186,9 +186,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     options.add_argument("--records", type=Path, help="folder of .at2 and .sac records; else synthetic ones")
     args = options.parse_args(argv)
     out = cli.folder(args.out)
-    motions = suite.motions(args.records, 1 if args.quick else 5)
-    studies = asked(motions[:1] if args.quick else motions)[1 if args.quick else 0 :]
-    found = [studied(*one) for one in tqdm(studies, desc="motions", disable=None, leave=False)]
+    motions = suite.motions(args, 5, quick=1)
+    studies = asked(motions)[1 if args.quick else 0 :]
+    rung = RUNG**4 if args.quick else RUNG
+    bar = tqdm(studies, desc="motions", disable=None, leave=False)
+    found = [studied(sides, name, motion, rung) for sides, name, motion in bar]
     rows = []
     for one in found:
         least = [shown(value, f"> {MOST:g}") for value in one.least]

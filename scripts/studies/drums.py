@@ -138,7 +138,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     count = math.ceil(math.log(HIGHEST / LOWEST) / math.log(RATIO))
     amplitudes = np.array([LOWEST * RATIO**i for i in range(count + 1)])
     if args.quick:
-        amplitudes = amplitudes[::10]
+        amplitudes = amplitudes[::15]
     grid = mr.Grid(build, column=COLUMNS, frequency=frequencies, amplitude=amplitudes.tolist())
     found = completed(grid, out / "drums.sqlite", workers=args.workers)
     shape = (len(COLUMNS), len(frequencies), len(amplitudes))

@@ -66,7 +66,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     args = options.parse_args(argv)
     out = cli.folder(args.out)
     rows = []
-    for number, record in enumerate(suite.motions(args.records, 1)):
+    for number, record in enumerate(suite.motions(args, 1, quick=1)):
         motion = suite.to_peak(record, args.pga)
         case = mr.Case(WALL, 0.0, motion.duration, motion=motion, effects=(TIE, THRUST))
         theory = mr.solve_analytical(case, mr.Restitution.from_geometry(WALL), rtol=1e-8)

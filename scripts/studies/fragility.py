@@ -59,7 +59,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run every record at every intensity, fit, draw and print."""
     args = suite.parser(__doc__, "fragility").parse_args(argv)
     out = cli.folder(args.out)
-    records = suite.motions(args.records, 8 if args.quick else 40)
+    records = suite.motions(args, 40, quick=8)
     motions = [polarity for motion in records for polarity in motion.polarities]
     levels = np.linspace(0.6, 0.9, 4) if args.quick else np.linspace(0.3, 1.2, 13)
 

@@ -35,9 +35,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run every record at every intensity, draw the curves, and print the capacities."""
     args = suite.parser(__doc__, "ida").parse_args(argv)
     out = cli.folder(args.out)
-    motions = [
-        polarity for motion in suite.motions(args.records, 2 if args.quick else 12) for polarity in motion.polarities
-    ]
+    motions = [polarity for motion in suite.motions(args, 12, quick=1) for polarity in motion.polarities]
     levels = np.linspace(0.1, 1.0, 4 if args.quick else 28)
     found = {
         solver: mr.ida(records(motions, solver), levels, out / "ida.sqlite", workers=args.workers)

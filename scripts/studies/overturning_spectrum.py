@@ -60,7 +60,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     table, rows, maps = [], [], dict[tuple[str, str], mr.OverturningMap]()
     for solver, size in SIZES.items():
-        n = 4 if args.quick else size
+        n = 3 if args.quick else size
         periods, amplitudes = 2 * math.pi / (np.linspace(8.0, 0.5, n) * FIGURE_3.p), np.linspace(0.5, 14.0, n) * LIFTING
         for sides in SIDES:
             build = partial(analysis, solver=solver, sides=sides)

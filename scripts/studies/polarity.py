@@ -35,7 +35,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run both polarities of every record, draw them against each other, and print."""
     args = suite.parser(__doc__, "polarity").parse_args(argv)
     out = cli.folder(args.out)
-    motions = suite.motions(args.records, 3 if args.quick else 40)
+    motions = suite.motions(args, 40, quick=2)
     levels = [0.3, 0.5] if args.quick else np.linspace(0.25, 0.75, 6).tolist()
 
     def build(solver: str, motion: mr.GroundMotion, pga: float, polarity: int) -> mr.Analysis:

@@ -70,7 +70,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run every spread, print the table and draw."""
     args = cli.parser(__doc__, "restitution_spread").parse_args(argv)
     out = cli.folder(args.out)
-    motions = suite.motions(None, 20 if args.quick else RECORDS)
+    motions = suite.synthetic(20 if args.quick else RECORDS)
     levels = np.linspace(0.1, 0.9, 9 if args.quick else 17)
     peaks = {sd: peaks_of(sd, 5 if args.quick else SEEDS) for sd in SPREADS}
     fell = {sd: overturned(motions, levels, sd) for sd in SPREADS}

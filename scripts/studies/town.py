@@ -225,7 +225,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     made.add_argument("--only-run", action="store_true", help="end after the campaign")
     args = made.parse_args(argv)
     out = cli.folder(args.out)
-    table = cli.csv_text(COLUMNS, drawn(count=20 if args.quick else 200))
+    table = cli.csv_text(COLUMNS, drawn(count=10 if args.quick else 200))
     with cli.write_text(out / "town_walls.csv", table).open(newline="", encoding="utf-8") as file:
         walls = {row["id"]: row for row in csv.DictReader(file)}
     grid, store, said = grid_of(walls, 5 if args.quick else 6), out / "town.sqlite", list[str]()
