@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from trees import nodes
 
 import mjrock as mr
 from mjrock import background_compilation, bars, compiled, compiler, loop_cache
@@ -314,7 +315,7 @@ def test_squares_are_products():
     powers = []
     for folder in ("engine", "geometry", "problem", "result", "scene", "theory"):
         for path in (PACKAGE / folder).rglob("*.py"):
-            for function in ast.walk(ast.parse(path.read_text())):
+            for function in nodes(path):
                 marks = {getattr(mark, "id", "") for mark in getattr(function, "decorator_list", ())}
                 if marks & {"compiled", "inlined"}:
                     found = [node for node in ast.walk(function) if isinstance(getattr(node, "op", None), ast.Pow)]

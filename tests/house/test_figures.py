@@ -136,27 +136,18 @@ SCREENS = {"view.png", "viewer.png", "notebook.png"}
 """Pictures of a screen, which go on beyond their edges."""
 
 
-def pictures():
-    """The pictures of the pages with their grey values, shape (rows, columns), 0 to 255."""
+def test_no_word_of_a_picture_is_cut_off_by_its_edge_and_none_is_half_empty():
+    """At the edges nothing is dark. Rows and columns are empty in which nothing is darker than the ground of a view in
+    space."""
+    cut, empty = [], {}
     for path in sorted(FOLDER.glob("*.png")):
         with Image.open(path) as picture:
-            yield path.name, np.asarray(picture.convert("L"))
-
-
-def test_no_word_of_a_picture_is_cut_off_by_its_edge():
-    cut = []
-    for name, grey in pictures():
+            grey = np.asarray(picture.convert("L"))
         rim = np.concatenate([grey[:2].ravel(), grey[-2:].ravel(), grey[:, :2].ravel(), grey[:, -2:].ravel()])
-        cut += [name] if (rim < 150).any() and name not in SCREENS else []
-    assert cut == []
-
-
-def test_no_picture_is_half_empty():
-    """Rows and columns in which nothing is darker than the ground of a view in space."""
-    empty = {}
-    for name, grey in pictures():
+        cut += [path.name] if (rim < 150).any() and path.name not in SCREENS else []
         shares = [1 - (grey < 225).any(axis=axis).mean() for axis in (0, 1)]
-        empty |= {name: shares} if max(shares) > 0.45 else {}
+        empty |= {path.name: shares} if max(shares) > 0.45 else {}
+    assert cut == []
     assert empty == {}
 
 

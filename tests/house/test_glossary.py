@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from trees import nodes
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "mjrock"
@@ -75,7 +76,7 @@ def test_symbols_in_prose_are_mathematics(name):
 
 def names_of(path):
     """Names of functions, classes, arguments, variables and attributes of a module, with their lines."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         for field in ("id", "name", "attr", "arg"):
             if isinstance(name := getattr(node, field, None), str):
                 yield name, getattr(node, "lineno", 0)
@@ -92,7 +93,7 @@ def test_names_are_no_verbs_of_speech():
 def test_types_are_nouns():
     offenders = []
     for path in modules():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.ClassDef) and node.name.lstrip("_") in PARTICIPLES:
                 offenders.append(f"{path.relative_to(ROOT)}:{node.lineno}: {node.name}")
     assert offenders == []

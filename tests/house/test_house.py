@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from trees import nodes, tree
 
 import mjrock
 from mjrock import contacts
@@ -50,18 +51,6 @@ def room(name):
     """The room of a module, with a dot where it is one within another."""
     parts = name.split(".")
     return ".".join(parts[: 2 if parts[0] == "problem" else 1])
-
-
-@cache
-def tree(path):
-    """A module as Python parses it."""
-    return ast.parse(path.read_text())
-
-
-@cache
-def nodes(path):
-    """All nodes of a module."""
-    return tuple(ast.walk(tree(path)))
 
 
 @cache

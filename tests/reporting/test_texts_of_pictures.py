@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from trees import nodes
 
 import mjrock as mr
 from mjrock.reporting import page
@@ -25,8 +26,7 @@ ITALIAN = Words("it")
 
 def printed(module):
     """The texts that a module prints on an Axes, with 1 in place of values."""
-    tree = ast.parse((Path(mr.__file__).parent / "plotting" / f"{module}.py").read_text(encoding="utf-8"))
-    for node in ast.walk(tree):
+    for node in nodes(Path(mr.__file__).parent / "plotting" / f"{module}.py"):
         if isinstance(node, ast.Call):
             name = getattr(node.func, "attr", "")
             at = {"text": 2}.get(name, 0)
