@@ -41,7 +41,7 @@ def thrown_both(speed):
     return flat.t[before], path[before], flat.velocity[before][:, 0], np.abs(there - path)[before]
 
 
-@pytest.mark.parametrize("number", among(range(20), 3))
+@pytest.mark.parametrize("number", among(range(0, 20, 3), 3))
 def test_a_block_thrown_off_a_table_moves_as_its_prism_in_space(number, monkeypatch):
     """Where both are looked at in every step. What is left is rounding, which grows while an edge chatters."""
     begun = ContactSearch.begun
@@ -55,7 +55,7 @@ def test_a_block_thrown_off_a_table_moves_as_its_prism_in_space(number, monkeypa
     assert thrown_both(SPEEDS[number])[-1].max() < 1e-4
 
 
-@pytest.mark.parametrize("number", among(range(20), 3, 8))
+@pytest.mark.parametrize("number", among([3, *range(2, 20, 3)], 3, 8))
 def test_a_block_and_its_prism_part_by_the_way_that_places_serve_for(number):
     """A prism is larger than its section, so that looks come at other times. A place serves while the pair moves by 2 %
     of the block. So the upward impulse, once the block hangs over the edge, acts so far off in each of the two. The
