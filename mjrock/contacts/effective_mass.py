@@ -17,6 +17,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -195,15 +196,30 @@ class EffectiveMass:
     limits: tuple[int, ...]
 
 
+class PointLaw(NamedTuple):
+    """What the effective mass of a contact depends on in its law.
+
+    Args:
+        friction: coefficient of friction [-], with which the point sticks as long as it can.
+        k: stiffness of a contact point [N/m]; or
+        frequency: circular frequency of the contact [rad/s]. Without either every equality constraint is rigid.
+    """
+
+    friction: float = 0.0
+    k: float | None = None
+    frequency: float | None = None
+
+    def together(self, count: int) -> PointLaw:
+        """That of a number of such points as one."""
+        return self if self.k is None else self._replace(k=count * self.k)
+
+
+FRICTIONLESS = PointLaw()
+"""A contact without friction among rigid constraints."""
+
+
 def effective_mass(
-    pair: GeomPair,
-    held: PoseConstraints,
-    away: Array,
-    points: tuple[Array, Array],
-    *,
-    friction: float = 0.0,
-    frequency: float | None = None,
-    k: float | None = None,
+    pair: GeomPair, held: PoseConstraints, away: Array, points: tuple[Array, Array], law: PointLaw
 ) -> EffectiveMass:
     """The effective mass of a contact in a pose, and what else acts on it.
 
@@ -212,10 +228,9 @@ def effective_mass(
         held: the pose, and its constraints.
         away: unit vector along which the first geom parts from the second, shape (3,).
         points: the contact point on each of the geoms, in the world's frame [m].
-        friction: coefficient of friction [-], with which the point sticks as long as it can.
-        frequency: circular frequency of the contact [rad/s]; or
-        k: its stiffness [N/m], which gives it. Without either every equality constraint is rigid.
+        law: of the contact.
     """
+    friction, k, frequency = law
     model, data = held.model, held.data
     jacobian = np.zeros((3, model.nv))
     for body, point, sign in zip(pair.bodies, points, (1.0, -1.0), strict=True):

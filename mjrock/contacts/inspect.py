@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 
 from .checks import Array, require_flag, require_whole, require_within, short_repr
+from .effective_mass import PointLaw
 from .geoms import NO_LOAD, GeomPair, compiled_model, every_pair, geom_label
 from .meeting import Keyframe, PairMeeting, Pose, meeting_of_geoms
 from .notes import (
@@ -154,7 +155,7 @@ def inspected(pair: GeomPair, pose: Pose, contacts: int | None = None, load: flo
     """The contact of two geoms in a pose, see `inspect_contacts`."""
     row = ModelRow.from_pair(pair)
     points = contacts if contacts is None or pair.makes_several_points else 1
-    met = meeting_of_geoms(pair, pose, contacts=points, friction=row.mixed.sliding, k=row.k)
+    met = meeting_of_geoms(pair, pose, contacts=points, law=PointLaw(row.mixed.sliding, row.k))
     force = load if load is not None else pose.load(pair, met.points, points)
     contact = InspectedContact(
         *pair.labels,

@@ -7,12 +7,13 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from fnmatch import fnmatchcase
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import mujoco
 
 from .checks import Array, Within, keep_declared, named, require_within, shown, spelt, warn_of, within_ranges
 from .contact import PairContact, PairContacts, blow_spoilers, merged, soft_spoilers, spoilers, weight_spoilers
+from .effective_mass import PointLaw
 from .geoms import BODY, GEOM, NO_LOAD, GeomPair, compiled_model, geom_id, makes, names_of_objects
 from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms
 from .notes import (
@@ -379,9 +380,7 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
         contacts=request.contacts,
         at=request.at,
         alone=request.mass is not None,
-        friction=grip.sliding,
-        frequency=LONG_STEP / h if request.k is None else None,
-        k=request.k,
+        law=PointLaw(grip.sliding, request.k, LONG_STEP / h if request.k is None else None),
     )
     if request.mass is None and not met.effective.mass < math.inf:
         raise ValueError(
@@ -394,8 +393,8 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
     c = request.c
     if c is None:
         c = 2 * _damping_ratio(request, math.sqrt(k / share), gravity) * math.sqrt(k * share)
-    staged = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
-    dashpot, inertia = _row(k, c, share, h, pair.inverse_weight, request.newmark_beta, staged)
+    step = EngineStep(h, request.newmark_beta, option.integrator == mujoco.mjtIntegrator.mjINT_RK4)
+    dashpot, inertia = _row(k, c, share, pair.inverse_weight, step)
     stiffness, damping, d = pair_values(k, dashpot, inertia, pair.inverse_weight)
     contact = PairContact(
         *pair.names,
@@ -418,7 +417,7 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
         load=pose.load(pair, met.points, request.contacts) if request.load is None else request.load / met.points,
     )
     remarks = [*unused(request.friction, grip), *shape_spoilers(pair, pose), *turned(pair, pose, k)]
-    remarks += _remarks(pair, pose, request, met, k, c, grip.sliding)
+    remarks += _remarks(pair, pose, request, met, PointLaw(grip.sliding, k), c)
     if request.restitution is not None:
         remarks += weight_spoilers(contact)
     remarks += blow_spoilers(contact, pair)
@@ -476,29 +475,43 @@ def _stiffest(pair: GeomPair, request: ContactRequest, h: float, mass: float, gr
 
 
 def _remarks(
-    pair: GeomPair, pose: Pose, request: ContactRequest, met: PairMeeting, k: float, c: float, mu: float
+    pair: GeomPair, pose: Pose, request: ContactRequest, met: PairMeeting, law: PointLaw, c: float
 ) -> Iterator[str]:
     """Reasons in the pose for which a contact differs from the request, one sentence each."""
     if request.mass is not None:
         return
-    xi, speed = c / (2 * math.sqrt(k * met.share)), request.speed or 1.0
+    assert law.k is not None
+    xi, speed = c / (2 * math.sqrt(law.k * met.share)), request.speed or 1.0
     if request.at is None:
         yield from unknown(pair, pose)
-    yield from giving_way(pair, pose, met, k, xi, mu, speed)
-    yield from holding(pose, met.effective, k * met.points, xi, speed)
+    yield from giving_way(pair, pose, met, law, xi, speed)
+    yield from holding(pose, met.effective, law.k * met.points, xi, speed)
     if request.c is None and request.at is None:
-        yield from other_keyframes(pair, pose, met, request.contacts, mu)
+        yield from other_keyframes(pair, pose, met, request.contacts, law.friction)
 
 
-def _row(
-    k: float, c: float, mass: float, h: float, inverse_weight: float, newmark_beta: float, staged: bool
-) -> tuple[float, float]:
+class EngineStep(NamedTuple):
+    """A step of the engine.
+
+    Args:
+        h: its length [s].
+        newmark_beta: Newmark's beta of the contact rows [-].
+        staged: whether it has the stages of RK4.
+    """
+
+    h: float
+    newmark_beta: float
+    staged: bool
+
+
+def _row(k: float, c: float, mass: float, inverse_weight: float, step: EngineStep) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of the contact row.
 
     The inertia is Newmark's in steps of Euler's method, and the least that there is in the stages of RK4. A step that
     is longer than 1 / omega could throw a touch back with more energy than it came with. There the row has the extra
     dashpot h k and beta = 1/2 at least, with which e stays below 0.6 whatever the step.
     """
+    h, newmark_beta, staged = step
     longest = longest_represented_step(k, inverse_weight)
     if h > longest:
         resolving = min(longest, resolving_step(k, c, mass))

@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 
 from .checks import Array, Within, short_repr, within_ranges
-from .effective_mass import with_tangents
+from .effective_mass import PointLaw, with_tangents
 from .files import aligned
 from .geoms import GeomPair, compiled_model
 from .inspect import InspectedContact, inspected
@@ -213,7 +213,7 @@ class Bench:
         Raises:
             ValueError: if they cannot approach each other there.
         """
-        met = meeting_of_geoms(self.pair, pose, friction=self.row.mixed.sliding, k=self.row.k)
+        met = meeting_of_geoms(self.pair, pose, law=PointLaw(self.row.mixed.sliding, self.row.k))
         if not met.effective.mass < math.inf:
             raise ValueError(f"geom1 and geom2 = {self.pair.labels} cannot approach each other at {self.pose.label}")
         return met

@@ -14,7 +14,16 @@ import mujoco
 import numpy as np
 
 from .checks import Array, Integers, is_iterable, require_array, require_whole, shown
-from .effective_mass import EffectiveMass, ModelSprings, PoseConstraints, effective_mass, moved_or_sprung, with_tangents
+from .effective_mass import (
+    FRICTIONLESS,
+    EffectiveMass,
+    ModelSprings,
+    PointLaw,
+    PoseConstraints,
+    effective_mass,
+    moved_or_sprung,
+    with_tangents,
+)
 from .geoms import BOUNDLESS, FARTHEST_GEOM, NO_LOAD, GeomPair, makes
 from .versions import enable_bits, make_mass_matrix
 
@@ -396,9 +405,7 @@ def meeting_of_geoms(
     contacts: int | None = None,
     at: object = None,
     alone: bool = False,
-    friction: float = 0.0,
-    frequency: float | None = None,
-    k: float | None = None,
+    law: PointLaw = FRICTIONLESS,
 ) -> PairMeeting:
     """How two geoms meet in a pose.
 
@@ -408,7 +415,7 @@ def meeting_of_geoms(
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
             the centres of mass if the landing has other points than `contacts`.
         alone: whether the points of these two geoms are the only ones, as they are where `contacts` or `at` is given.
-        friction, frequency, k: see `effective_mass`.
+        law: of each contact point.
     """
     if at is not None:
         point = require_array("at", at, (3,))
@@ -425,8 +432,7 @@ def meeting_of_geoms(
         places = pair.centre(pose.data, pair.bodies[0]), pair.centre(pose.data, pair.bodies[1])
     else:
         places = first.mean(axis=0), second.mean(axis=0)
-    whole = None if k is None else k * count
-    effective = effective_mass(pair, pose.held, here.away, places, friction=friction, frequency=frequency, k=whole)
+    effective = effective_mass(pair, pose.held, here.away, places, law.together(count))
     return PairMeeting(count, effective, others)
 
 

@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 
 from .checks import Array, named
-from .effective_mass import ACTUATOR, JOINT, TENDON, EffectiveMass, effective_mass
+from .effective_mass import ACTUATOR, JOINT, TENDON, EffectiveMass, PointLaw, effective_mass
 from .geoms import FACING, GeomPair
 from .meeting import TOUCHING_AT_REST, PairMeeting, Pose, keyframe_names, meeting_of_geoms
 from .rebound import rebound_at, rebound_restitution
@@ -332,15 +332,13 @@ def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
     return f"{words} {mujoco.mj_id2name(model, kind, number) or f'[{number}]'!s}".strip()
 
 
-def giving_way(
-    pair: GeomPair, pose: Pose, met: PairMeeting, k: float, xi: float, friction: float, speed: float
-) -> Iterator[str]:
+def giving_way(pair: GeomPair, pose: Pose, met: PairMeeting, law: PointLaw, xi: float, speed: float) -> Iterator[str]:
     """A sentence where joints give way within a blow, so that the mass at its end is another.
 
     Args:
         pair, pose, met: the geoms, the pose, and how they meet in it.
-        k, xi: stiffness of a contact point [N/m] and damping ratio [-].
-        friction: coefficient of friction [-].
+        law: of a contact point, with its stiffness.
+        xi: damping ratio [-].
         speed: speed of the approach [m/s].
 
     A blow lasts about pi / omega, and its impulse grows to (1 + e) m v: the joints move by half of that on average.
@@ -348,7 +346,8 @@ def giving_way(
     if met.effective.yielding:  # `holding` names them
         return
     model, here = pair.model, pose.landing(pair)
-    lasts = math.pi / math.sqrt(k / met.share)
+    assert law.k is not None
+    lasts = math.pi / math.sqrt(law.k / met.share)
     moved = np.array(pose.data.qpos)
     mujoco.mj_integratePos(model, moved, met.effective.motion, 0.5 * (1 + rebound_restitution(xi)) * speed * lasts)
     later = Pose(model, qpos=moved)
@@ -358,7 +357,7 @@ def giving_way(
         before.append(point)
         after.append(later.data.xpos[body] + turned @ (point - pose.data.xpos[body]))
     first, last = (
-        effective_mass(pair, each.held, here.away, (points[0], points[1]), friction=friction, k=k * met.points).mass
+        effective_mass(pair, each.held, here.away, (points[0], points[1]), law.together(met.points)).mass
         for each, points in ((pose, before), (later, after))
     )
     if max(last / first, first / last) > FOREIGN:
@@ -378,7 +377,7 @@ def other_keyframes(
     for name, other in zip(names, pose.others, strict=False):
         if pose.given and other.leaves(pair):
             continue
-        share = meeting_of_geoms(pair, other, contacts=contacts, friction=friction).share
+        share = meeting_of_geoms(pair, other, contacts=contacts, law=PointLaw(friction)).share
         if 0 < share < IMMOVABLE * pair.moving:  # beyond that the motion is one that cannot be
             worst = max(worst, (max(share / here.share, here.share / share), name, share))
     _, name, share = worst

@@ -29,7 +29,7 @@ from .joint_motion import (
     sunk_ground,
 )
 from .motion import SampledMotion
-from .rocking import Rocking, rocking_history
+from .rocking import Rocking, RotationHistory, rocking_history
 
 TIME_AT_REST = 0.2
 """Duration from which on blocks that have left their joints may lie still [s]."""
@@ -76,7 +76,8 @@ class BesidePoses(NamedTuple):
 def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion, *, released: bool = True) -> Reading:
     """Impacts, peaks and the ending of a wall. `released` is whether the motion starts with the release."""
     uplift, theta, omega = Uplift.from_case(case, contacts), motion.theta[:, 0], motion.velocity[:, 0, 2]
-    times, peaks, impacts = rocking_history(case, t, theta, omega, motion.energy, uplift, released=released)
+    rotation = RotationHistory(t, theta, omega, motion.energy)
+    times, peaks, impacts = rocking_history(case, rotation, uplift, released=released)
     slip = motion.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return Reading(
         *ending(case, t, motion.pose[:, 0], motion.energy, uplift.energy, motion.velocity[-1, 0]),

@@ -106,21 +106,30 @@ def largest_rotations(case: Case, rocking: Rocking, theta: Array) -> tuple[float
     return (peak, max(inwards, 0.0)) if outwards >= inwards else (max(outwards, 0.0), peak)
 
 
+class RotationHistory(NamedTuple):
+    """The sampled rotation of a wall, finely enough to find its impacts.
+
+    Args:
+        t: times of the samples [s], shape (n,).
+        theta: rotation [rad], likewise.
+        omega: angular velocity [rad/s].
+        energy: above rest [J].
+    """
+
+    t: Array
+    theta: Array
+    omega: Array
+    energy: Array
+
+
 def rocking_history(
-    case: Case,
-    t: Array,
-    theta: Array,
-    omega: Array,
-    energy: Array,
-    uplift: tuple[float, float],
-    *,
-    released: bool = True,
+    case: Case, motion: RotationHistory, uplift: tuple[float, float], *, released: bool = True
 ) -> tuple[Array, Array, tuple[Impact, ...]]:
     """Times and sizes of the rotation peaks, and the impacts between them, of a sampled rocking motion.
 
     Args:
         case: the case. Its release is the first peak unless it is released on its way out.
-        t, theta, omega, energy: the motion [s, rad, rad/s, J], shape (n,), finely sampled.
+        motion: the motion.
         uplift: the rotation at which an edge of the base lifts [rad], and the energy above rest that belongs to it [J].
             A smaller maximum is an elastic motion of the base and no rocking. With a side stop, a maximum behind
             theta = 0 is an elastic motion of the stop, whatever its size.
@@ -130,22 +139,23 @@ def rocking_history(
         Peak times [s], peaks |theta| [rad], and the impacts. In free rocking an impact is found from the peaks before
         and after it. On a shaken base it is found from the velocities at which the wall passes the uplift rotation.
     """
-    times, sizes = _maxima(t, theta, omega, one_sided=case.one_sided)
+    times, sizes = _maxima(motion, one_sided=case.one_sided)
     rocking = sizes > uplift[0]
     prepended = released and not case.released_outwards and case.release_energy > 0
     if prepended:
-        rocking &= times > t[1]  # the release itself, where its velocity differs from zero by rounding
-    residual = sizes[(times > times[rocking][-1]) if rocking.any() else times > t[0]]
+        rocking &= times > motion.t[1]  # the release itself, where its velocity differs from zero by rounding
+    residual = sizes[(times > times[rocking][-1]) if rocking.any() else times > motion.t[0]]
     times, sizes = times[rocking], sizes[rocking]
     if prepended:
-        times, sizes = np.append(t[0], times), np.append(case.release_peak, sizes)
+        times, sizes = np.append(motion.t[0], times), np.append(case.release_peak, sizes)
     if case.shaken:
-        return times, sizes, _between_passes(case, t, theta, omega, energy, uplift)
-    return times, sizes, _between_peaks(case, t, theta, omega, times, sizes, residual, uplift[0])
+        return times, sizes, _between_passes(case, motion, uplift)
+    return times, sizes, _between_peaks(case, motion, times, sizes, residual, uplift[0])
 
 
-def _maxima(t: Array, theta: Array, omega: Array, *, one_sided: bool) -> tuple[Array, Array]:
+def _maxima(motion: RotationHistory, *, one_sided: bool) -> tuple[Array, Array]:
     """Times and sizes of the maxima of |theta|, or of theta alone, interpolated between samples."""
+    t, theta, omega, _ = motion
     outward = omega * np.sign(theta)
     turns = np.flatnonzero((outward[:-1] > 0) & (outward[1:] <= 0) & ((theta[:-1] > 0) | (not one_sided)))
     share = outward[turns] / (outward[turns] - outward[turns + 1])
@@ -154,14 +164,15 @@ def _maxima(t: Array, theta: Array, omega: Array, *, one_sided: bool) -> tuple[A
 
 
 def _between_peaks(
-    case: Case, t: Array, theta: Array, omega: Array, times: Array, sizes: Array, residual: Array, threshold: float
+    case: Case, motion: RotationHistory, times: Array, sizes: Array, residual: Array, threshold: float
 ) -> tuple[Impact, ...]:
     """One impact between each pair of peaks, at the time when the wall passes theta = 0 or comes closest to it.
 
     An impact after which the wall no longer rocks is the last one. Its energy after the impact is that of the largest
     rotation in `residual`, the maxima that follow, or of the motion with which the run ends.
     """
-    left_over = _left_over(case, theta, omega, residual, threshold)
+    t, theta, _, _ = motion
+    left_over = _left_over(case, motion, residual, threshold)
     signs = np.sign(np.interp(times, t, theta))
     leaving_peak, reaching_peak = peak_energies(case, np.where(signs < 0, -sizes, sizes))
     impacts = []
@@ -195,26 +206,24 @@ def _between_peaks(
     return tuple(impacts)
 
 
-def _left_over(case: Case, theta: Array, omega: Array, residual: Array, threshold: float) -> float:
+def _left_over(case: Case, motion: RotationHistory, residual: Array, threshold: float) -> float:
     """Energy that the wall has after its last impact [J]. It is NaN if the run ends during that impact."""
     if residual.size:
         return float(case.restoring.energy(float(residual.max())))
-    if abs(theta[-1]) > threshold:  # the run ends while the wall turns outwards
-        kinetic = 0.5 * case.wall.inertia_about(float(theta[-1])) * float(omega[-1]) ** 2
-        return float(case.restoring.energy(float(theta[-1]))) + kinetic
+    theta, omega = float(motion.theta[-1]), float(motion.omega[-1])
+    if abs(theta) > threshold:  # the run ends while the wall turns outwards
+        return float(case.restoring.energy(theta)) + 0.5 * case.wall.inertia_about(theta) * omega**2
     return math.nan
 
 
-def _between_passes(
-    case: Case, t: Array, theta: Array, omega: Array, energy: Array, uplift: tuple[float, float]
-) -> tuple[Impact, ...]:
+def _between_passes(case: Case, motion: RotationHistory, uplift: tuple[float, float]) -> tuple[Impact, ...]:
     """One impact for each time that the rotation falls below the uplift rotation.
 
     The energy before it is that of the rigid wall as it falls below that rotation. The energy after it is that of the
     rigid wall as it exceeds it again, to either side. A wall whose energy drops below that of uplift in between has
     come to rest. The energy after the impact is then that lowest energy.
     """
-    wall, (threshold, least) = case.wall, uplift
+    wall, (threshold, least), (t, theta, omega, energy) = case.wall, uplift, motion
     outside = np.where(np.abs(theta) > threshold, np.sign(theta), 0.0)
     if case.side_stop:
         outside = np.maximum(outside, 0.0)

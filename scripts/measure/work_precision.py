@@ -34,7 +34,7 @@ from mjrock.engine.rows import inverse_weights
 from mjrock.engine.stepping import fixed_steps
 from mjrock.result.ledger import StepError
 from mjrock.result.response import Response
-from mjrock.result.rocking import Rocking, peak_energies, restitution_of, rocking_history
+from mjrock.result.rocking import Rocking, RotationHistory, peak_energies, restitution_of, rocking_history
 from mjrock.scene.wall import wall_course
 from mjrock.theory.analytical import RigidMotion
 from scripts.shared import accuracy, cli
@@ -206,7 +206,9 @@ def scipy_law(rtol: float) -> Solve:
 
 
 def _as_response(case: mr.Case, contacts: mr.Contacts, t, theta, omega, steps: int) -> Response:  # type: ignore[no-untyped-def]
-    _, peaks, impacts = rocking_history(case, t, theta, omega, 0 * t, (contacts.uplift_rotation(case.block), 0.0))
+    _, peaks, impacts = rocking_history(
+        case, RotationHistory(t, theta, omega, 0 * t), (contacts.uplift_rotation(case.block), 0.0)
+    )
     return Response(
         *(case, "stock", t, RigidMotion(case, theta, omega, 0.0), mr.Outcome.TIME_ENDED, ""),
         rocking=Rocking(impacts, peaks),

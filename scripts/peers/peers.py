@@ -27,7 +27,7 @@ from tqdm import tqdm
 import mjrock as mr
 from mjrock import plotting
 from mjrock.quantities import Array
-from mjrock.result.rocking import peak_energies, restitution_of, rocking_history
+from mjrock.result.rocking import RotationHistory, peak_energies, restitution_of, rocking_history
 from scripts.peers.codes.question import Question
 from scripts.peers.codes.worker import Task
 from scripts.shared import accuracy, cli
@@ -170,7 +170,7 @@ class Problem:
         if not np.isfinite(theta).all() or np.abs(theta).max() > math.pi / 2:
             return np.zeros(0)
         uplift = self.contacts.uplift_rotation(FIGURE_3)
-        times, sizes, _ = rocking_history(case, t, theta, omega, 0 * t, (uplift, 0.0))
+        times, sizes, _ = rocking_history(case, RotationHistory(t, theta, omega, 0 * t), (uplift, 0.0))
         kept: list[tuple[float, float]] = []
         for time, size in zip(times, sizes, strict=True):
             between = np.abs(theta[(t >= kept[-1][0]) & (t <= time)]) if kept else np.zeros(1)

@@ -45,7 +45,7 @@ from .effects import (
 from .histories import OfSupports, Support, Tilt, supports_of, tilt_history
 from .laws.bond import Bond
 from .laws.own_law import Own
-from .limit.collapse import limit_of, pushed
+from .limit.collapse import LimitLoads, limit_of, pushed
 from .masonry import Masonry
 from .rest_geometry import MasonryRestGeometry
 
@@ -76,7 +76,7 @@ def stood(case: MasonryCase) -> float:
 def _multiplier(masonry: Masonry) -> float:
     ways = np.eye(masonry.freedom.translations)[0] * [[1.0], [-1.0]]
     try:
-        return min(limit_of(masonry, way, pushed(masonry, way)).multiplier for way in ways)
+        return min(limit_of(masonry, LimitLoads(way, pushed(masonry, way))).multiplier for way in ways)
     except ValueError:  # it cannot stand, which the solvers say
         return math.inf
 

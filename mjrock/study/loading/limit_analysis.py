@@ -17,7 +17,7 @@ from ...geometry.poses import at_rest, moved
 from ...linear import rates_of
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import applied, dragged, pulls_of
-from ...problem.masonry.limit.collapse import Collapse, UnbalancedError, limit_of, pushed
+from ...problem.masonry.limit.collapse import Collapse, LimitLoads, UnbalancedError, limit_of, pushed
 from ...problem.masonry.limit.pose import Moves, gaps_of, posed, spans_in
 from ...problem.masonry.limit.statics import MOVES, Pulls, falling
 from ...problem.masonry.lines import free_numbers, mean_slip_rates
@@ -176,13 +176,14 @@ def collapse_multiplier(
     spans, constant = [link.span for link in links], applied(masonry, given)
     strength = np.array([law.pulls_at(span) for law, span in zip(laws, spans, strict=True)])
     ties = Pulls.from_forces(masonry, pulls_of(masonry, links), strength)
+    loads_at_limit = LimitLoads(push, grown, constant)
     if pose is not None:
-        return limit_of(masonry, push, grown, constant, ties=ties, least=-math.inf)
+        return limit_of(masonry, loads_at_limit, ties=ties, least=-math.inf)
     falls = falling(masonry, constant, ties)
     if falls:
         under = "the weight and the effects" if given else "the weight"
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under {under}")
-    found = limit_of(masonry, push, grown, constant, associated=dilates, ties=ties)
+    found = limit_of(masonry, loads_at_limit, associated=dilates, ties=ties)
     found = replace(found, wedged=wedged(masonry, given), loads=growing, effects=given)
     if found.wedged:
         warn_of(
@@ -190,7 +191,7 @@ def collapse_multiplier(
             "together; the multiplier is that of blocks that are wedged",
             Implausible,
         )
-    if not dilates and (turning := _turning(found, grown, constant, ties)):
+    if not dilates and (turning := _turning(found, loads_at_limit, ties)):
         warn_of(
             f"multiplier = {abs(found.multiplier):.1g}: {named(turning)} turn about their normals without friction, "
             "since rigid faces let normal forces gather in a point; give points = 2, or associated=True for an upper "
@@ -286,13 +287,13 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Eff
     return given
 
 
-def _turning(found: Collapse, grown: Array, constant: Array, ties: Pulls) -> tuple[str, ...]:
+def _turning(found: Collapse, loads: LimitLoads, ties: Pulls) -> tuple[str, ...]:
     """Names of joints that press and turn about their normals in a mechanism of no multiplier, where only that is why:
     associated friction, which has corners of the faces press, bears something."""
     masonry = found.masonry
     if masonry is None or not masonry.in_space or found.forces is None or abs(found.multiplier) > NOTHING:
         return ()
-    if limit_of(masonry, found.direction, grown, constant, ties=ties).multiplier < BORNE:
+    if limit_of(masonry, loads, ties=ties).multiplier < BORNE:
         return ()
     count, lines = len(masonry.joints), masonry.lines
     rates = np.abs(mean_slip_rates(masonry.blocks, lines, count) @ found.motion.ravel()).reshape(3, count)

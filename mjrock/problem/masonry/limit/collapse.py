@@ -112,24 +112,29 @@ class Collapse(NotebookPicture):
         return f"<Collapse at {self.multiplier:.4g} times the forces that grow: {named(self.moving)} move{wedged}>"
 
 
+class LimitLoads(NamedTuple):
+    """What acts on masonry at its limit, beside its weight.
+
+    Args:
+        push: the unit vector of a horizontal force, or zero, shape (2,), in space (3,).
+        grown: forces that grow and their moments about the centroids of the free blocks [N, N m], shape (free, 3), in
+            space (free, 6).
+        applied: constant ones, likewise.
+    """
+
+    push: Array
+    grown: Array
+    applied: Array | float = 0.0
+
+
 def limit_of(
-    masonry: Masonry,
-    push: Array,
-    grown: Array,
-    applied: Array | float = 0.0,
-    *,
-    associated: bool = True,
-    ties: Pulls | None = None,
-    least: float = 0.0,
+    masonry: Masonry, loads: LimitLoads, *, associated: bool = True, ties: Pulls | None = None, least: float = 0.0
 ) -> Collapse:
     """The multiplier at which rigid masonry moves that stands under its weight, and its mechanism.
 
     Args:
         masonry: the masonry.
-        push: the unit vector of a horizontal force, or zero, shape (2,), in space (3,).
-        grown: forces that grow and their moments about the centroids of the free blocks [N, N m], shape (free, 3), in
-            space (free, 6).
-        applied: constant ones beside the weight, likewise.
+        loads: what acts on it.
         associated: whether sliding opens joints.
         ties: that hold the blocks, or None.
         least: multiplier of associated friction that is looked for, below nothing where masonry is held back.
@@ -137,6 +142,7 @@ def limit_of(
     Raises:
         ValueError: if no state without dilatancy is found, or no multiplier from `least` on holds the masonry.
     """
+    push, grown, applied = loads
     weight, lines, resultant = weight_of(masonry), masonry.lines, grown[:, :3].sum(axis=0)
     turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED * np.abs(grown[:, :3]).sum()
     across = axes_along(lines.normal, resultant) if turned else lines.across
@@ -158,7 +164,7 @@ def limit_of(
 
 
 def pushed(masonry: Masonry, push: Array) -> Array:
-    """A force on every free block in proportion to its weight, along a unit vector, as `limit_of` takes it."""
+    """A force on every free block in proportion to its weight, along a unit vector, as `LimitLoads` have it."""
     weight = weight_of(masonry).reshape(len(masonry.free), -1)
     force = np.zeros_like(weight)
     force[:, : len(push)] = np.outer(np.abs(weight).sum(axis=1), push)
