@@ -62,9 +62,7 @@ SAME = ("twice", "after_another", "in_threads", "from_the_middle", "mirrored", "
 
 
 @pytest.mark.parametrize("glued", [False, True])
-@pytest.mark.parametrize(
-    "seed", [5, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (3, 4, 6, 9, 11, 14, 16))]
-)
+@pytest.mark.parametrize("seed", [5, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (3, 6, 9, 11, 14))])
 def test_a_scene_whose_joints_have_own_laws(seed, glued):
     """Joints that stiffen, and glue with a memory, in the plane and in space, as stacks and walls and where blocks fall
     on contacts that are found."""
