@@ -82,13 +82,13 @@ def stamp(path: Path) -> str:
 class LoopCache(FunctionCache):  # type: ignore[misc]
     """numba's cache on disk, which is a convenience: whatever is wrong with it, the function is compiled anew."""
 
-    def __init__(self, function: Callable[..., Any], at_once: bool) -> None:
+    def __init__(self, function: Callable[..., object], at_once: bool) -> None:
         super().__init__(function)
         self._at_once = at_once
         self._cache_file._source_stamp = stamp(Path(function.__code__.co_filename))
         self._locked: Any = None
 
-    def load_overload(self, *key: Any) -> Any:
+    def load_overload(self, *key: object) -> Any:
         """The compiled function, or None where there is none that can be read. This process then compiles it, and
         others wait. What is stored makes room for it.
 
@@ -103,7 +103,7 @@ class LoopCache(FunctionCache):  # type: ignore[misc]
                 self._unlock()
         return stored
 
-    def _stored(self, *key: Any) -> Any:
+    def _stored(self, *key: object) -> Any:
         try:
             return super().load_overload(*key)
         except Exception:
@@ -123,7 +123,7 @@ class LoopCache(FunctionCache):  # type: ignore[misc]
         if self._locked is not None:
             self._locked.release()
 
-    def save_overload(self, *key: Any) -> None:
+    def save_overload(self, *key: object) -> None:
         """Store the compiled function unless the disk refuses."""
         with contextlib.suppress(OSError):
             super().save_overload(*key)
@@ -136,7 +136,7 @@ class NoCache(NullCache):  # type: ignore[misc]
     def __init__(self, at_once: bool) -> None:
         self._at_once = at_once
 
-    def load_overload(self, *key: Any) -> None:
+    def load_overload(self, *key: object) -> None:
         """Nothing is stored.
 
         Raises:
@@ -146,7 +146,7 @@ class NoCache(NullCache):  # type: ignore[misc]
             raise NotStoredError
 
 
-def cache_of(function: Callable[..., Any], at_once: bool) -> LoopCache | NoCache:
+def cache_of(function: Callable[..., object], at_once: bool) -> LoopCache | NoCache:
     """Where a compiled function is stored, if any folder can be written."""
     try:
         return LoopCache(function, at_once)

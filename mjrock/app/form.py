@@ -13,7 +13,7 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..assessment.sharing import Part
 from ..assessment.tables import Document, Place
@@ -279,7 +279,7 @@ class Plan:
         found = {key: self.field(fields, key) for key, one in state.items() if one != ""}
         return {key: self._value(field, state[key]) for key, field in found.items()}
 
-    def _value(self, field: Field | None, value: object) -> Any:
+    def _value(self, field: Field | None, value: object) -> object:
         if isinstance(value, Mapping):
             if field is None or field.control in ("named", "pairs"):
                 return {name: self._item(field, one) for name, one in value.items()}
@@ -288,7 +288,7 @@ class Plan:
             return [self._item(field, one) for one in value]
         return typed(value, ANY if field is None else field.types) if isinstance(value, str) else value
 
-    def _item(self, field: Field | None, value: object) -> Any:
+    def _item(self, field: Field | None, value: object) -> object:
         """A table of a field, or an item of a list, whose texts stay as they are."""
         if field is None:
             return self._value(None, value)
@@ -316,10 +316,10 @@ class Plan:
                 yield from (((name, *place), path) for place, path in self.files_in(one, field))
 
     @property
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """The plan as the page takes it."""
 
-        def plain(field: Field) -> dict[str, Any]:
+        def plain(field: Field) -> dict[str, object]:
             own = field._asdict() | {"variants": [one._asdict() for one in field.variants]}
             return {key: one for key, one in own.items() if key != "types" and one not in ("", (), [], False)}
 
@@ -334,7 +334,7 @@ def _mechanisms_of(several: Part) -> Part:
     return found
 
 
-def _each(value: object, place: Place) -> list[tuple[Place, Any]]:
+def _each(value: object, place: Place) -> list[tuple[Place, object]]:
     """A value with its place, or each item of a list with its own."""
     return [((*place, i), one) for i, one in enumerate(value)] if isinstance(value, list) else [(place, value)]
 
@@ -369,7 +369,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def typed(text: str, types: frozenset[str]) -> Any:
+def typed(text: str, types: frozenset[str]) -> object:
     """The value that a text stands for in a field that takes some types; the text itself where it fits none.
 
     A number may have a comma as its decimal mark, unless it may be that of thousands, as in 1,000.
@@ -406,7 +406,7 @@ def text_of(value: object) -> str:
 def state_of(tables: Document) -> Document:
     """The input of the form that stands for tables of a file: its values as texts."""
 
-    def one(value: object) -> Any:
+    def one(value: object) -> object:
         if isinstance(value, Mapping):
             return state_of(value)
         if isinstance(value, list) and value and all(isinstance(each, Mapping) for each in value):

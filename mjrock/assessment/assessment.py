@@ -198,9 +198,9 @@ class Assessment:
             write_text(require_path("path", path), text)
         return text
 
-    def _made(self) -> dict[str, Any]:
+    def _made(self) -> dict[str, object]:
         """Its tables, from the objects."""
-        found: dict[str, Any] = {} if self.language == "en" else {"language": self.language}
+        found: dict[str, object] = {} if self.language == "en" else {"language": self.language}
         found |= {name: dict(one) for name, one in (("project", self.project), ("design", self.trials)) if one}
         try:
             if list(self.mechanisms) == [""]:
@@ -367,7 +367,7 @@ def _trials(reader: Reader, top: Table, document: Document) -> dict[str, Any]:
     table = reader.required_table(top, "design")
     found = reader.arguments(table.without("values"), DESIGN)
     try:
-        replaced(document, place_of(found["key"]), None)
+        replaced(document, place_of(str(found["key"])), None)
     except (LookupError, TypeError):
         unknown = "{place} = {key!r} is no key of the file; spell it effects[0].diameter"
         reader.refusal(table.place_of("key"), unknown, key=found["key"])

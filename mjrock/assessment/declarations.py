@@ -127,7 +127,7 @@ def choices_of(kind: Hint) -> tuple[str, ...]:
 
 
 @cache
-def described(call: Callable[..., Any]) -> dict[str, str]:
+def described(call: Callable[..., object]) -> dict[str, str]:
     """What the docstring of a class or function says of each of its arguments."""
     found: dict[str, str] = {}
     names: list[str] = []
@@ -147,7 +147,7 @@ def _section(text: str, head: str) -> str:
 
 
 @cache
-def maker_of(call: Callable[..., Any], owner: type | None = None) -> Maker:
+def maker_of(call: Callable[..., object], owner: type | None = None) -> Maker:
     """The keys of a class, of a constructor of a class `owner`, or of a function."""
     parameters = inspect.signature(call).parameters.values()
     hints = hints_of(call)
@@ -167,7 +167,7 @@ def maker_of(call: Callable[..., Any], owner: type | None = None) -> Maker:
     return Maker(call, own, (inspect.getdoc(call) or "").partition("\n\n")[0].replace("\n", " "))
 
 
-def hints_of(call: Callable[..., Any]) -> dict[str, Hint]:
+def hints_of(call: Callable[..., object]) -> dict[str, Hint]:
     """The types of the arguments of a class or function, with what is declared of them."""
     hints = _evaluated(call)
     own = vars(call).get("__init__") if isinstance(call, type) else None
@@ -176,7 +176,7 @@ def hints_of(call: Callable[..., Any]) -> dict[str, Hint]:
     return hints
 
 
-def _evaluated(call: Callable[..., Any]) -> dict[str, Hint]:
+def _evaluated(call: Callable[..., object]) -> dict[str, Hint]:
     """Annotations as types; a name that type checkers alone import stands for any type."""
     unknown: dict[str, Hint] = {}
     while True:
@@ -223,9 +223,9 @@ def _constructors(kind: type) -> set[str]:
     return names
 
 
-def subclasses_of(kind: type[Any]) -> list[type[Any]]:
+def subclasses_of(kind: type[object]) -> list[type[object]]:
     """A class and all that are derived from it, those of a user too, in the order in which they were defined."""
-    return [kind, *(one for sub in kind.__subclasses__() for one in subclasses_of(sub))]
+    return [kind, *(one for sub in type.__subclasses__(kind) for one in subclasses_of(sub))]
 
 
 @cache

@@ -76,7 +76,7 @@ class Reader:
             faults = dict.fromkeys(sorted(self.faults, key=lambda one: one.line or 0))
             raise AssessmentError(tuple(faults), self.name, self.language)
 
-    def made(self, table: Table, maker: Maker, given: Mapping[str, Any] | None = None) -> Any:
+    def made(self, table: Table, maker: Maker, given: Mapping[str, object] | None = None) -> Any:
         """What a table stands for.
 
         Args:
@@ -94,7 +94,7 @@ class Reader:
             self.refuse(*self._cause(error, table, maker))
             raise RefusedError from None
 
-    def arguments(self, table: Table, maker: Maker, given: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    def arguments(self, table: Table, maker: Maker, given: Mapping[str, object] | None = None) -> dict[str, object]:
         """The arguments that a table has, and those that are given."""
         before, arguments = len(self.faults), dict(given or {})
         keys = {key_named(key): key for name, key in maker.keys.items() if name not in arguments}
@@ -114,17 +114,17 @@ class Reader:
             raise RefusedError
         return arguments | self._expanded(table, arguments)
 
-    def _expanded(self, table: Table, arguments: dict[str, Any]) -> dict[str, Any]:
+    def _expanded(self, table: Table, arguments: dict[str, object]) -> dict[str, object]:
         """Sequences among arguments with the effects of what acts as several, such as a `Wedge`."""
         wall = next((one for one in arguments.values() if isinstance(one, Block)), None)
-        found: dict[str, Any] = {}
+        found: dict[str, object] = {}
         for name, values in arguments.items():
             if isinstance(values, tuple) and any(isinstance(one, CombinedEffect) for one in values):
                 parts = [self._effects_of(*pair, wall) for pair in zip(table.values[name], values, strict=True)]
                 found[name] = tuple(effect for part in parts for effect in part)
         return found
 
-    def _effects_of(self, table: Table, effect: object, wall: Block | None) -> tuple[Any, ...]:
+    def _effects_of(self, table: Table, effect: object, wall: Block | None) -> tuple[object, ...]:
         """An effect, or those that one of several stands for."""
         if not isinstance(effect, CombinedEffect):
             return (effect,)
@@ -171,7 +171,7 @@ class Reader:
             raise self.refusal(table.place_of(name), "{place} = {value} is not known; {remedy}", **values)
         return value
 
-    def value(self, key: Key, value: object, place: Place) -> Any:
+    def value(self, key: Key, value: object, place: Place) -> object:
         """The value of a key, checked by its declaration.
 
         Raises:
@@ -179,7 +179,7 @@ class Reader:
         """
         return self._of_kinds(key.kinds, key.within, value, place)
 
-    def _of_kinds(self, kinds: tuple[Hint, ...], within: Within | None, value: object, place: Place) -> Any:
+    def _of_kinds(self, kinds: tuple[Hint, ...], within: Within | None, value: object, place: Place) -> object:
         """A value of one of some types, of a number within a range."""
         if isinstance(value, Table):
             return self._table(kinds, value)
@@ -194,7 +194,7 @@ class Reader:
             return self._number(kinds, within, value, place)
         raise self._wrong(place, value, kinds, within)
 
-    def _text(self, kinds: tuple[Hint, ...], value: str, place: Place) -> Any:
+    def _text(self, kinds: tuple[Hint, ...], value: str, place: Place) -> object:
         """A text, one of several, or a path from the folder of the file."""
         known = [choice for kind in kinds for choice in choices_of(kind)]
         if known and value not in known:
@@ -210,7 +210,7 @@ class Reader:
             raise self.refusal(place, "{place} = {value} leads out of the folder of the files", value=brief(value))
         return path
 
-    def _number(self, kinds: tuple[Hint, ...], within: Within | None, value: str | float, place: Place) -> Any:
+    def _number(self, kinds: tuple[Hint, ...], within: Within | None, value: str | float, place: Place) -> object:
         """A number, or a text with a unit."""
         name = spelt_place(place)
         try:
@@ -230,7 +230,7 @@ class Reader:
             self.refuse(place, reason(error))
         raise RefusedError
 
-    def _row(self, kinds: tuple[Hint, ...], within: Within | None, value: list[Any], place: Place) -> Any:
+    def _row(self, kinds: tuple[Hint, ...], within: Within | None, value: list[object], place: Place) -> object:
         """A list, each item of the type that the argument has there."""
         rows = [items for kind in kinds if (items := items_of(kind)) is not None]
         if not rows:
@@ -252,7 +252,7 @@ class Reader:
             raise RefusedError
         return tuple(found)
 
-    def _table(self, kinds: tuple[Hint, ...], table: Table) -> Any:
+    def _table(self, kinds: tuple[Hint, ...], table: Table) -> object:
         """What a table within another stands for: an object of one of some classes, or texts by name."""
         classes = classes_of(kinds)
         if classes:

@@ -23,12 +23,12 @@ def shared(whole: Schema) -> Schema:
     names: dict[str, str] = {}
     parts: Schema = {}
 
-    def count(node: object) -> Any:
+    def count(node: object) -> object:
         text = _text(node)
         counts[text] += 1
         return _over_parts(node, count) if counts[text] == 1 else node
 
-    def written(node: object) -> Any:
+    def written(node: object) -> object:
         text = _text(node)
         if counts[text] == 1 or len(text) <= SHORT:
             return _over_parts(node, written)
@@ -57,7 +57,7 @@ def _beyond(tables: Schema, name: str) -> Schema:
     return {"$ref": f"#/$defs/{free}"} | needed | ({"properties": further} if further else {})
 
 
-def _over_parts(node: object, call: Callable[[Any], Any]) -> Any:
+def _over_parts(node: object, call: Callable[[object], object]) -> Any:
     """A part of a schema, with what a function makes of each part in it."""
     if not isinstance(node, dict):
         return node

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from ..assessment.assessment import Assessment
 from ..command_line import Answer, Status, complain, parser, ruled
@@ -40,7 +39,7 @@ def steps_of(check: MechanismCheck, words: Words) -> list[str]:
     return [line.rstrip() for line in aligned(rows, "<><")]
 
 
-def plain(name: str, file: str, check: MechanismCheck) -> dict[str, Any]:
+def plain(name: str, file: str, check: MechanismCheck) -> dict[str, object]:
     """A check for other programs: numbers in SI units, None for what is infinite.
 
     Args:
@@ -92,7 +91,7 @@ def answer(argv: Sequence[str]) -> Answer:
     made.add_argument("-j", "--json", action="store_true", help="for other programs, in SI units")
     args = made.parse_args(argv)
     texts: list[str] = []
-    found: list[dict[str, Any]] = []
+    found: list[dict[str, object]] = []
     status = Status.HOLDS
     for file in args.files:
         try:

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba.core import types
+from numba.core.base import BaseContext
+from numba.core.typing import Context, Signature
 from numba.extending import intrinsic
+
+from ..quantities import Integers
+
+Intrinsic = tuple[Signature, Callable[[BaseContext, ir.IRBuilder, Signature, Sequence[ir.Value]], ir.Value]]
+"""Types of a call, and what writes its instructions."""
 
 ORDERED = "seq_cst"
 """What a thread has written before such a number is seen by those that read the number after."""
@@ -14,16 +22,20 @@ WORD = 8
 """Bytes of a number."""
 
 
-def _place(context: Any, builder: Any, kind: Any, numbers: Any, index: Any) -> Any:
+def _place(
+    context: BaseContext, builder: ir.IRBuilder, kind: types.Type, numbers: ir.Value, index: ir.Value
+) -> ir.Value:
     """The address of a number of an array."""
     return builder.gep(context.make_array(kind)(context, builder, numbers).data, [index])
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def _add(typing: Any, numbers: Any, index: Any, more: Any) -> Any:
+def _add(typing: Context, numbers: types.Type, index: types.Type, more: types.Type) -> Intrinsic:
     signature = types.int64(numbers, types.int64, types.int64)
 
-    def generated(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generated(
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, given: Sequence[ir.Value]
+    ) -> ir.Value:
         place = _place(context, builder, signature.args[0], given[0], given[1])
         return builder.atomic_rmw("add", place, given[2], ORDERED)
 
@@ -31,20 +43,24 @@ def _add(typing: Any, numbers: Any, index: Any, more: Any) -> Any:
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def _look(typing: Any, numbers: Any, index: Any) -> Any:
+def _look(typing: Context, numbers: types.Type, index: types.Type) -> Intrinsic:
     signature = types.int64(numbers, types.int64)
 
-    def generated(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generated(
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, given: Sequence[ir.Value]
+    ) -> ir.Value:
         return builder.load_atomic(_place(context, builder, signature.args[0], *given), ORDERED, WORD)
 
     return signature, generated
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def _rest(typing: Any, numbers: Any, address: Any) -> Any:
+def _rest(typing: Context, numbers: types.Type, address: types.Type) -> Intrinsic:
     signature = types.int64(numbers, types.int64)
 
-    def generated(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generated(
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, given: Sequence[ir.Value]
+    ) -> ir.Value:
         kind = ir.FunctionType(ir.IntType(32), [])
         builder.call(builder.inttoptr(given[1], kind.as_pointer()), [])
         return ir.Constant(ir.IntType(64), 0)
@@ -52,16 +68,16 @@ def _rest(typing: Any, numbers: Any, address: Any) -> Any:
     return signature, generated
 
 
-def add(numbers: Any, index: int, more: int) -> Any:
+def add(numbers: Integers, index: int, more: int) -> Any:
     """Add to a number of an array. Returns what it was before."""
     return _add(numbers, index, more)
 
 
-def look(numbers: Any, index: int) -> Any:
+def look(numbers: Integers, index: int) -> Any:
     """A number of an array as another thread has left it."""
     return _look(numbers, index)
 
 
-def rest(numbers: Any, address: int) -> Any:
+def rest(numbers: Integers, address: int) -> Any:
     """Let other threads have the core, by a function of C with an address. The numbers are left as they are."""
     return _rest(numbers, address)

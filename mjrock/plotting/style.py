@@ -63,7 +63,7 @@ OWN: tuple[Look, ...] = (
 class Picture(Figure):
     """A figure without `pyplot`, which a notebook shows by itself."""
 
-    def add_subplot(self, *given: Any, **options: Any) -> Axes:
+    def add_subplot(self, *given: Any, **options: object) -> Axes:
         """A new Axes, whose lines have the colours of this package."""
         ax: Axes = super().add_subplot(*given, **options)
         ax.set_prop_cycle(color=PALETTE)

@@ -209,7 +209,7 @@ class Filling(string.Formatter):
     def __init__(self, words: Words) -> None:
         self.words = words
 
-    def format_field(self, value: Any, format_spec: str) -> str:
+    def format_field(self, value: object, format_spec: str) -> str:
         """A value as it stands in the text."""
         text = self.words.message(value) if isinstance(value, str) else super().format_field(value, format_spec)
         return self.words.marked(text) if isinstance(value, int | float) else str(text)

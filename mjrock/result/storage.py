@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from ..contacts.files import replacing, require_file
 from ..quantities import named, require_path, warn_of
 from .tree import Reader, Tree, UnreadableError, Writer, fields_of, name_of, unit_and_text
 from .variables import Variable, attributes_of, variables_of
+
+if TYPE_CHECKING:
+    from h5py import Dataset, File
 
 FORMAT, FORMAT_VERSION = "mjrock response", 1
 """Name of the format, and number of its layout, which grows when older programs would misread it."""
@@ -93,7 +96,7 @@ def write_answer(answer: Any, path: str | Path) -> Path:
     return path
 
 
-def _write_variables(file: Any, variables: Mapping[str, Variable]) -> None:
+def _write_variables(file: File, variables: Mapping[str, Variable]) -> None:
     """Write the arrays of the top with their dimensions."""
     for name, variable in variables.items():
         made = _dataset(file, name, variable.values, variable.units, variable.text)
@@ -107,7 +110,7 @@ def _write_variables(file: Any, variables: Mapping[str, Variable]) -> None:
             made.dims[axis].label = dim
 
 
-def _write_parts(file: Any, held: Mapping[str, StoredArray], texts: Tree) -> None:
+def _write_parts(file: File, held: Mapping[str, StoredArray], texts: Tree) -> None:
     """Write the other arrays, the texts, and the checksums of all."""
     for name, one in held.items():
         made = _dataset(file, name, one.values, one.units, one.text)
@@ -125,7 +128,7 @@ def _write_parts(file: Any, held: Mapping[str, StoredArray], texts: Tree) -> Non
     )
 
 
-def _dataset(file: Any, name: str, values: Any, units: str, text: str) -> Any:
+def _dataset(file: File, name: str, values: object, units: str, text: str) -> Dataset:
     """A new dataset with its unit and its description."""
     large = isinstance(values, np.ndarray) and values.size >= COMPRESSED
     packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if large else {}
@@ -157,7 +160,7 @@ def read_answer(path: str | Path, laws: Iterable[type] = ()) -> Any:
         raise ValueError(f"{path} is no file of Response.save, or is damaged: {error}") from None
 
 
-def _answer(path: Path, file: Any, laws: Iterable[type]) -> Any:
+def _answer(path: Path, file: File, laws: Iterable[type]) -> Any:
     """The response of an open file."""
     if file.attrs.get("format") != FORMAT:
         raise UnreadableError("this is a file of HDF5, and not one of Response.save")

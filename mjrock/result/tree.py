@@ -12,13 +12,14 @@ import enum
 import importlib
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from copy import deepcopy
 from functools import cached_property, partial
 from itertools import takewhile
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..quantities import shown, spelt, warn_of
 
@@ -109,7 +110,7 @@ class Writer:
 
     def __init__(
         self,
-        keep: Callable[[str, np.ndarray[Any, Any], type, str], str] | None = None,
+        keep: Callable[[str, NDArray[np.generic], type, str], str] | None = None,
         has_place: Callable[[object], bool] = lambda array: False,
     ) -> None:
         self._keep, self._has_place, self.lost = keep, has_place, dict[str, str]()
@@ -141,7 +142,7 @@ class Writer:
             return self._of_object(value, path)
         return self._lose(value, path)
 
-    def _collected(self, value: Any, path: str, of: type, field: str) -> Tree:
+    def _collected(self, value: Collection[object], path: str, of: type, field: str) -> Tree:
         """The tree of a tuple, a list, a set or a dictionary."""
         if isinstance(value, dict):
             if all(type(name) is str for name in value):
@@ -152,7 +153,7 @@ class Writer:
         items = [self.tree(one, f"{path}.{i}", of, field) for i, one in enumerate(ordered)]
         return items if isinstance(value, tuple) else {type(value).__name__: items}
 
-    def _of_array(self, value: np.ndarray[Any, Any], path: str, of: type, field: str) -> Tree:
+    def _of_array(self, value: NDArray[np.generic], path: str, of: type, field: str) -> Tree:
         """The tree of an array: its numbers, or its name among those that are kept beside the tree."""
         layout: dict[str, Tree] = {"rows": True} if isinstance(value, np.recarray) else {}
         layout |= {"fixed": True} if not value.flags.writeable else {}
@@ -163,7 +164,7 @@ class Writer:
             return {"values": numbers, "shape": list(value.shape), "type": value.dtype.str} | layout
         return {"array": self._keep(path, value, of, field), **layout}
 
-    def _of_object(self, value: Any, path: str) -> Tree:
+    def _of_object(self, value: object, path: str) -> Tree:
         """The tree of an object by its fields. One that may have functions has a method that puts values there."""
         kind, plain = type(value), getattr(value, "without_functions", None)
         held = value if plain is None else plain()
@@ -173,7 +174,7 @@ class Writer:
             cached = {name for name, one in members if isinstance(one, cached_property)}
             for name in sorted(vars(value).keys() - parts.keys() - cached):
                 self._lose(getattr(value, name), f"{path}.{name}")
-        formula = {"formula": kind.formula} if getattr(kind, "formula", "") else {}  # of a law of the user
+        formula = {"formula": text} if (text := getattr(kind, "formula", "")) else {}  # of a law of the user
         return {"class": name_of(kind)} | formula | parts
 
     def _lose(self, value: object, path: str) -> Tree:
@@ -236,7 +237,7 @@ class Reader:
             raise UnreadableError(f"{path} is the same as {known}, which is not there")
         return self._known[known]
 
-    def _of_array(self, tree: dict[str, Tree], path: str) -> np.ndarray[Any, Any]:
+    def _of_array(self, tree: dict[str, Tree], path: str) -> NDArray[np.generic]:
         if "values" in tree:
             values = np.array(self.value(tree["values"], path), dtype=tree["type"]).reshape(tree["shape"])
         elif tree["array"] not in self._arrays:

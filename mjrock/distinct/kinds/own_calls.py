@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numba
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba.core import types
+from numba.core.base import BaseContext
 from numba.core.errors import NumbaError
+from numba.core.typing import Context, Signature
 from numba.extending import intrinsic
 
 from ...problem.wall.user_law import layout
@@ -17,11 +20,15 @@ OF_COMPILER = {"nogil": True, "error_model": "numpy"}
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def _call(context: Any, values: Any, address: Any, closing: Any, rate: Any) -> Any:
+def _call(
+    context: Context, values: types.Type, address: types.Type, closing: types.Type, rate: types.Type
+) -> tuple[Signature, Callable[[BaseContext, ir.IRBuilder, Signature, Sequence[ir.Value]], ir.Value]]:
     """A call of a function of C by its address, with the address of numbers and two numbers."""
     signature = types.void(values, types.int64, types.float64, types.float64)
 
-    def generated(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generated(
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, given: Sequence[ir.Value]
+    ) -> ir.Value:
         values, address, closing, rate = given
         array = context.make_array(signature.args[0])(context, builder, values)
         kind = ir.FunctionType(C_NOTHING, [C_BYTES, C_NUMBER, C_NUMBER])

@@ -44,7 +44,7 @@ def of_builder(name: str, builder: Callable[..., Any]) -> classmethod[Any, Any, 
     return _class_method(name, make, builder)
 
 
-def of_reader(name: str, read: Callable[..., Any]) -> classmethod[Any, Any, Any]:
+def of_reader(name: str, read: Callable[..., object]) -> classmethod[Any, Any, Any]:
     """The class method that makes masonry of the meshes that a reader finds in a file."""
     (source,) = inspect.signature(read).parameters
 
@@ -55,14 +55,16 @@ def of_reader(name: str, read: Callable[..., Any]) -> classmethod[Any, Any, Any]
     return _class_method(name, make, read, file_options)
 
 
-def _class_method(name: str, make: Callable[..., Any], *functions: Callable[..., Any]) -> classmethod[Any, Any, Any]:
+def _class_method(
+    name: str, make: Callable[..., object], *functions: Callable[..., object]
+) -> classmethod[Any, Any, Any]:
     """A class method with the arguments of some functions and the keywords of masonry, as `make` takes them."""
     functions = (*functions, joint_options)
     parameters = [inspect.Parameter("cls", inspect.Parameter.POSITIONAL_OR_KEYWORD)]
     parameters += [one for function in functions for one in inspect.signature(function).parameters.values()]
     signature = inspect.Signature(parameters, return_annotation="Self")
 
-    def construct(*given: Any, **options: Any) -> Any:
+    def construct(*given: object, **options: object) -> object:
         try:
             bound = signature.bind(*given, **options).arguments
         except TypeError as error:
@@ -77,7 +79,7 @@ def _class_method(name: str, make: Callable[..., Any], *functions: Callable[...,
     return classmethod(with_known_keywords(construct, f"Masonry.{name}"))
 
 
-def joined_doc(*functions: Callable[..., Any]) -> str:
+def joined_doc(*functions: Callable[..., object]) -> str:
     """The docstring of the first function, with the arguments, errors and warnings of all."""
     found = {"Args": "", "Raises": "", "Warns": "", "Examples": ""}
     heads = []

@@ -10,7 +10,7 @@ import math
 import re
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import Field, asdict, dataclass, field, fields, replace
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
@@ -303,7 +303,7 @@ class Code:
 def _parts_of(given: dict[str, Any]) -> dict[str, Any]:
     """The arguments of a `Code` that a file gives."""
     parts = _known("the file", Code, given)
-    kinds: dict[str, Callable[..., Any]] = {"linear": LinearRule, "damage": DamageRule, "dynamic": DynamicRule}
+    kinds: dict[str, Callable[..., object]] = {"linear": LinearRule, "damage": DamageRule, "dynamic": DynamicRule}
     kinds["confidence"] = ConfidenceRule
     for name in kinds.keys() & parts.keys():
         parts[name] = _made(name, kinds[name], parts[name])
@@ -319,7 +319,7 @@ def _parts_of(given: dict[str, Any]) -> dict[str, Any]:
     return parts
 
 
-def _made(name: str, kind: Callable[..., Any], given: object) -> object:
+def _made(name: str, kind: Callable[..., object], given: object) -> object:
     """A part of a code, whose errors name the table of the file that has it."""
     require_kind(name, given, dict)
     try:
@@ -328,7 +328,7 @@ def _made(name: str, kind: Callable[..., Any], given: object) -> object:
         raise type(error)(f"{name}: {error}") from None
 
 
-def _known(name: str, kind: Callable[..., Any], given: dict[str, Any]) -> dict[str, Any]:
+def _known(name: str, kind: Callable[..., object], given: dict[str, Any]) -> dict[str, Any]:
     """A table of the file whose entries are arguments of a class, with all that have no default."""
     entries = {one.name: one for one in fields(kind)}  # type: ignore[arg-type]
     for key in given:
@@ -339,7 +339,7 @@ def _known(name: str, kind: Callable[..., Any], given: dict[str, Any]) -> dict[s
     return given
 
 
-def _needed(own: Any) -> bool:
+def _needed(own: Field[object]) -> bool:
     """Whether a field of a dataclass has no default."""
     return own.default is own.default_factory  # both are MISSING
 

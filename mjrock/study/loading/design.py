@@ -226,7 +226,7 @@ def design(
     return Design(trials)
 
 
-def _tried(build: Callable[[Any], Any], value: object, demand: object, options: Mapping[str, Any]) -> Trial:
+def _tried(build: Callable[[Any], object], value: object, demand: object, options: Mapping[str, Any]) -> Trial:
     """The checks of a value, or why there are none."""
     try:
         built = build(value)
@@ -239,7 +239,7 @@ def _tried(build: Callable[[Any], Any], value: object, demand: object, options: 
     return Trial(value, label_of(value), checks, built=built)
 
 
-def _checked(value: Any, built: Any, demand: Any, options: Mapping[str, Any]) -> Check:
+def _checked(value: object, built: Any, demand: Any, options: Mapping[str, Any]) -> Check:
     """The check of what was built with a value, or the check that was built. A limit curve is a mechanism, and bears
     loads."""
     if isinstance(built, Check):

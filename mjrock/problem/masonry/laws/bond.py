@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -177,7 +177,7 @@ class Bond:
         return HARDENED * (self.crushing or 0.0) * (self.hardening or 0.0)
 
 
-def strengths(bonds: Sequence[Any], name: str) -> Array:
+def strengths(bonds: Sequence[object], name: str) -> Array:
     """A strength of each bond, or of a law of one's own, which has none [Pa], zero where there is none, (joints,)."""
     return np.array([0.0 if bond is None else getattr(bond, name) for bond in bonds])
 
