@@ -26,7 +26,7 @@ def fixed_steps(scene, course, timestep):
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, 0.25))
         engine.release(course)
-        return stepping.fixed_steps(engine, scene, course, timestep, 0.25)
+        return stepping.fixed_steps(engine, scene, course, 0.25)
 
 
 def stock_takes(poses, text, atol):

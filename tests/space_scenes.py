@@ -53,7 +53,7 @@ def fixed(scene, what, timestep, *, beta=0.25, coulomb=False):
     with engine_of(scene) as engine:
         engine.follow(timestep, pair_rows(scene, timestep, beta))
         engine.release(what)
-        return stepping.fixed_steps(engine, scene, what, timestep, beta, coulomb=coulomb)
+        return stepping.fixed_steps(engine, scene, what, beta, coulomb=coulomb)
 
 
 def fitted(scene, what, accuracy=1e-3, *, coulomb=True):

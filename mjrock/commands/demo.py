@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -55,14 +56,24 @@ def drawn(case: Case, responses: Sequence[Response], title: str) -> Figure:
     return figure
 
 
+class StepOptions(NamedTuple):
+    """`timestep` [s] and `accuracy` [-] of `simulate`."""
+
+    timestep: float | None = None
+    accuracy: float = 1e-3
+
+
+USUAL_STEPS = StepOptions()
+"""Those of the README."""
+
+
 def compared(
     case: Case,
     e: Restitution,
     contacts: Contacts,
     folder: Path,
+    steps: StepOptions = USUAL_STEPS,
     *,
-    timestep: float | None = None,
-    accuracy: float = 1e-3,
     check: bool = True,
 ) -> str:
     """Write the FILES of a wall in MuJoCo beside rocking theory into a folder.
@@ -72,7 +83,7 @@ def compared(
         e: what it keeps of its angular velocity at an impact.
         contacts: those of MuJoCo.
         folder: that of the files, which is there.
-        timestep, accuracy: as in `simulate`.
+        steps: of MuJoCo.
         check: whether SciPy solves the law of the contacts too.
 
     Returns:
@@ -82,7 +93,7 @@ def compared(
         ValueError, TypeError, OSError: as the solvers, and where a file cannot be written.
     """
     theory = solve_analytical(case, e)
-    engine = simulate(case, contacts, timestep, accuracy=accuracy)
+    engine = simulate(case, contacts, steps.timestep, accuracy=steps.accuracy)
     responses = [theory, engine]  # the last is drawn on top
     if check:
         responses.append(solve_compliant(case, contacts))
@@ -93,8 +104,8 @@ def compared(
     title = f"2h = {2 * case.wall.h:g} m, 2b = {2 * case.wall.b:g} m, {'one' if case.side_stop else 'two'}-sided"
     save(drawn(case, responses, title), picture)
     longest = engine.stats["longest_timestep"]
-    steps = f"{step * 1e3:.3g} ms" if timestep else f"{step * 1e3:.3g} to {longest * 1e3:.3g} ms"
-    took = f"MuJoCo: {engine.stats['steps']} steps of {steps} in {engine.stats['wall_time']:.3f} s"
+    lengths = f"{step * 1e3:.3g} ms" if steps.timestep else f"{step * 1e3:.3g} to {longest * 1e3:.3g} ms"
+    took = f"MuJoCo: {engine.stats['steps']} steps of {lengths} in {engine.stats['wall_time']:.3f} s"
     lines = [took, "", impacts.table()]
     if check:
         also = compare(responses[2], engine).table()

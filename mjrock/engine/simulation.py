@@ -206,7 +206,7 @@ def fixed(problem: Problem, scene: Scene, course: Course, options: Options, h: f
             engine.follow(h, pair_rows(scene, h, beta, method))
             engine.release(course)
             watch = Stopwatch()
-            steps = fixed_steps(engine, scene, course, h, beta, coulomb=options.slides, method=method)
+            steps = fixed_steps(engine, scene, course, beta, coulomb=options.slides, method=method)
         took = watch.stepping()
         run = EngineRun.judged(problem, scene, course, steps)
     except StepError as error:

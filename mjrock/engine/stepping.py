@@ -70,7 +70,6 @@ def fixed_steps(
     engine: Engine,
     scene: Scene,
     course: Course,
-    timestep: float,
     newmark_beta: float,
     *,
     coulomb: bool = False,
@@ -85,6 +84,7 @@ def fixed_steps(
         StepError: if the engine warns or the state is not finite.
     """
     memory, setting, done = engine.memory, Setting.of_run(scene, course, method, refines=False), 0
+    timestep = float(engine.model.opt.timestep)
     sliding, released_on = Sliding.at_start(setting.points, coulomb=coulomb, method=method), engine.closed
     frames = frames_of(memory.pose, setting.points.places.freedom)
     if sliding.coulomb:

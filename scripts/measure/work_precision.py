@@ -126,7 +126,7 @@ def stock(integrator: str, h: float, *, default_contacts: bool = False) -> Solve
         synchronised = integrator == "RK4"  # the others keep velocities half a step back, as our own steps do
         if synchronised:
             engine.data.qvel[:] = course.velocity.ravel()
-        steps = fixed_steps(engine, scene, course, h, 0)
+        steps = fixed_steps(engine, scene, course, 0)
         seconds = time.perf_counter() - started
         omega = (steps.record.before if synchronised else steps.velocity)[:, 2]
         return _as_response(case, contacts, steps.t, steps.pose[:, 2], omega, len(steps.t)), seconds

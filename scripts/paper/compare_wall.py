@@ -59,8 +59,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     case = mr.Case(wall, theta0=args.release * wall.alpha, duration=duration, side_stop=args.sides == 1)
     out = cli.folder(args.out)
 
-    how = {"timestep": args.timestep, "accuracy": args.accuracy, "check": args.check}
-    tables = demo.compared(case, e, contacts, out, **how)
+    tables = demo.compared(case, e, contacts, out, demo.StepOptions(args.timestep, args.accuracy), check=args.check)
     side = f", side {contacts.side.xi:.2%} (e = {e.side:.3f})" if contacts.side else ""
     print(
         f"wall {2 * wall.b:g} x {2 * wall.h:g} x {wall.length:g} m, "

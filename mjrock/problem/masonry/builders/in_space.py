@@ -215,18 +215,19 @@ class Walls(NamedTuple):
         return [0.0 if course % 2 else self.thickness, *heads, self.depth]
 
 
+class FacadeSize(NamedTuple):
+    """Length and height of a facade, and depth of its return walls [m]."""
+
+    length: float
+    height: float
+    depth: float
+
+
 def walls_of(
-    length: float,
-    height: float,
-    depth: float,
-    unit: tuple[float, float],
-    *,
-    thickness: float | None,
-    returns: str,
-    gable: int,
+    size: FacadeSize, unit: tuple[float, float], *, thickness: float | None, returns: str, gable: int
 ) -> Walls:
     """Measures of a facade, checked, see `facade`."""
-    long, high = required_unit(unit)
+    (length, height, depth), (long, high) = size, required_unit(unit)
     if not isinstance(returns, str) or returns not in RETURNS:
         raise ValueError(f"returns = {spelt(returns)} is not one of {', '.join(RETURNS)}")
     sides = RETURNS[returns]
@@ -285,7 +286,7 @@ def facade(
         ValueError: for a value outside its range, or an opening that does not fit.
     """
     require_kind("ground", ground, Polyhedron, type(None))
-    walls = walls_of(length, height, depth, unit, thickness=thickness, returns=returns, gable=gable)
+    walls = walls_of(FacadeSize(length, height, depth), unit, thickness=thickness, returns=returns, gable=gable)
     holes, lintels = _holes(openings, walls)
     half, top = 0.5 * walls.length, (walls.courses + walls.gable) * walls.high
     if ground is None:
