@@ -45,16 +45,17 @@ def main(argv: Sequence[str] | None = None) -> None:
         solver = "MuJoCo" if k_n else "analytical"
         return suite.analysis(block, scaled, solver, k_n=k_n or suite.STIFF, side_stop=bool(side_stop))
 
-    grid = mr.Grid(
-        build,
-        side_stop=[side_stop for side_stop, _ in SIDES],
-        wall=range(1 if args.quick else len(WALLS)),
-        motion=suite.motions(args, 8, quick=1),
-        polarity=(0, 1),
-        level=LEVELS[1:3] if args.quick else LEVELS,
-        k_n=(0.0, *STIFFNESSES),  # zero stands for the rigid base of theory
-    )
-    found = completed(grid, out / "agreement.sqlite", workers=args.workers)
+    shared: dict[str, Any] = {
+        "wall": range(1 if args.quick else len(WALLS)),
+        "motion": suite.motions(args, 8, quick=1),
+        "level": LEVELS[1:3] if args.quick else LEVELS,
+        "k_n": (0.0, *STIFFNESSES),  # zero stands for the rigid base of theory
+    }
+    polarities = {1: (0, 1), 0: (0,)}  # to a wall without a side stop both are the same
+    tasks = [
+        task for side, _ in SIDES for task in mr.Grid(build, side_stop=[side], polarity=polarities[side], **shared)
+    ]
+    found = completed(tasks, out / "agreement.sqlite", workers=args.workers)
     table = []
     for side_stop, title in SIDES:
         for k_n in STIFFNESSES:
@@ -71,9 +72,8 @@ def main(argv: Sequence[str] | None = None) -> None:
 
 
 def of_case(found: Sequence[Mapping[str, Any]], side_stop: int, k_n: float) -> list[Mapping[str, Any]]:
-    """The runs of theory and of a base. To a wall without a side stop both polarities are the same."""
-    own = [row for row in found if row["side_stop"] == side_stop and row["k_n"] in (0.0, k_n)]
-    return own if side_stop else [row for row in own if row["polarity"] == 0]
+    """The runs of theory and of a base."""
+    return [row for row in found if row["side_stop"] == side_stop and row["k_n"] in (0.0, k_n)]
 
 
 def drawn(found: Sequence[Mapping[str, Any]]) -> Figure:
