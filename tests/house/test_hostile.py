@@ -82,7 +82,7 @@ HEALTH = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 
 @given(calls())
-@settings(max_examples=400, deadline=None, derandomize=True, suppress_health_check=HEALTH)
+@settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=HEALTH)
 def test_a_call_is_answered_or_refused_by_name(call):
     is_answered(*call)
 

@@ -4,6 +4,7 @@ import re
 import tomllib
 
 import pytest
+from everyday import slow
 
 import mjrock as mr
 from mjrock.assessment.assessment import assessment_of
@@ -72,7 +73,7 @@ blocks = [
 """
 
 
-@pytest.fixture(scope="module", params=["en", "it"])
+@pytest.fixture(scope="module", params=[slow("en"), "it"])
 def page(request, tmp_path_factory):
     """The page of a file of five walls, one of them in two mechanisms, and its words."""
     assessment = mr.from_toml(text=FILE.format(language=request.param))
