@@ -16,13 +16,13 @@ import numpy as np
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import take_frames
-from ..geometry.kinematics import Places, gap, meeting, over_face, where_friction_acts
+from ..geometry.kinematics import Places, gap, meeting, relative_velocity, where_friction_acts
 from ..geometry.poses import moved
 from ..geometry.vectors import dot
 from ..quantities import Array, Integers
 from ..result.ledger import Ledger
 from ..scene.course import Course, Shaking, mean_acceleration
-from ..scene.dampers import taken_by_dampers
+from ..scene.dampers import dissipated_by_dampers
 from ..scene.potential import breaks, spring_energy
 from ..scene.scene import Scene
 from .record import Record, StepKinds, Steps, Windows
@@ -84,7 +84,7 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
     dashpots, friction, _ = contact_work(scene, steps)
     friction[:-1] -= given_back(scene, steps)
-    dampers = taken_by_dampers(scene.dampers, steps.pose, windows.mean, windows.width, steps.record.damping)
+    dampers = dissipated_by_dampers(scene.dampers, steps.pose, windows.mean, windows.width, steps.record.damping)
     dashpots = np.concatenate([dashpots, dampers], axis=1)
     return Ledger(
         t=windows.t,
@@ -207,8 +207,8 @@ def slip_along(places: Places, i: int, frames: Array, v: Array, way: Array) -> f
     against that at the pose.
     """
     meets = where_friction_acts(places, meeting(places, i, frames))
-    velocity = over_face(places, i, meets, frames, v)
-    return dot(slip_of(meets.normal, over_face(places, i, meets, frames, way)).way, velocity)
+    velocity = relative_velocity(places, i, meets, frames, v)
+    return dot(slip_of(meets.normal, relative_velocity(places, i, meets, frames, way)).way, velocity)
 
 
 class ContactForces(NamedTuple):

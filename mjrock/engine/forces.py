@@ -13,7 +13,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..geometry.frames import place
-from ..geometry.kinematics import meeting, over_face, where_friction_acts
+from ..geometry.kinematics import meeting, relative_velocity, where_friction_acts
 from ..geometry.vectors import increase, moment, plus, scaled, vector
 from ..problem.masonry.case import AnyCase
 from ..quantities import Array, Integers
@@ -83,7 +83,7 @@ def _gather(points: Points, record: Record, windows: Windows, kinds: StepKinds, 
                 continue
             meets = where_friction_acts(places, meeting(places, i, room.frames))
             slipping = room.middle if now.coulomb else record.after[n]
-            way = slip_of(meets.normal, over_face(places, i, meets, room.frames, slipping)).way
+            way = slip_of(meets.normal, relative_velocity(places, i, meets, room.frames, slipping)).way
             force = plus(scaled(now.row, meets.normal), scaled(now.along, way))
             body, joint = places.body[i], places.joint[i]
             at = plus(vector(into.rest, body, axes), plus(place(room.frames, body, axes), meets.arm))

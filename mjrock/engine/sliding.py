@@ -20,7 +20,7 @@ import numpy as np
 
 from ..compiled import inlined
 from ..contacts.solref import inertia_of
-from ..geometry.kinematics import Meeting, Places, meeting, over_face, push_apart, where_friction_acts
+from ..geometry.kinematics import Meeting, Places, meeting, push_apart, relative_velocity, where_friction_acts
 from ..geometry.vectors import Vector, dot, minus, plus, put, scaled, tangent, vector
 from ..method import METHOD, Method
 from ..quantities import Array, Flags
@@ -85,7 +85,7 @@ def slip_of(normal: Vector, velocity: Vector) -> Slipping:
 @inlined
 def slipping(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -> Slipping:
     """Slip of contact i where friction acts for velocities v."""
-    return slip_of(meets.normal, over_face(places, i, meets, frames, v))
+    return slip_of(meets.normal, relative_velocity(places, i, meets, frames, v))
 
 
 @inlined
@@ -102,8 +102,8 @@ def take_way(memory: EngineArrays, places: Places, sliding: Sliding, i: int, mee
 
     The leapfrog keeps the velocity of half a step before. The slip may turn with the motion in between.
     """
-    kept = over_face(places, i, meets, frames, memory.velocity)
-    ahead = scaled(0.5 * memory.options[TIMESTEP], over_face(places, i, meets, frames, memory.acceleration))
+    kept = relative_velocity(places, i, meets, frames, memory.velocity)
+    ahead = scaled(0.5 * memory.options[TIMESTEP], relative_velocity(places, i, meets, frames, memory.acceleration))
     return turned_to(sliding, i, slip_of(meets.normal, plus(kept, ahead)).way)
 
 
@@ -111,8 +111,8 @@ def take_way(memory: EngineArrays, places: Places, sliding: Sliding, i: int, mee
 def pressing_force(memory: EngineArrays, points: Points, i: int, meets: Meeting, frames: Array) -> float:
     """Force of the contact law at the velocity and acceleration in the memory, not below zero [N]."""
     places, d, W = points.places, memory.rows.solimp[i, 0], points.weight[i]
-    rate = dot(meets.normal, over_face(places, i, meets, frames, memory.velocity))
-    closing = dot(meets.normal, over_face(places, i, meets, frames, memory.acceleration))
+    rate = dot(meets.normal, relative_velocity(places, i, meets, frames, memory.velocity))
+    closing = dot(meets.normal, relative_velocity(places, i, meets, frames, memory.acceleration))
     sprung = memory.rows.solref[i, 0] * meets.gap + memory.rows.solref[i, 1] * rate
     return max(sprung / ((1 - d) * W) - inertia_of(d, W) * closing, 0.0)
 
@@ -180,7 +180,7 @@ def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, 
         if sliding.slides[i] and (n >= method.patient or not again):
             meets = where_friction_acts(places, meeting(places, i, frames))
             now = slipping(places, i, meets, frames, memory.velocity)
-            faster = dot(now.way, over_face(places, i, meets, frames, memory.acceleration))
+            faster = dot(now.way, relative_velocity(places, i, meets, frames, memory.acceleration))
             later = now.speed + memory.options[TIMESTEP] * faster
             if now.speed * later <= 0 or (again and n == method.looks - 1):
                 memory.dimension[i] = ROUGH
@@ -242,7 +242,7 @@ def time_to_stop(places: Places, sliding: Sliding, frames: Array, v: Array, a: A
         if sliding.slid[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
             now = slipping(places, i, meets, frames, v)
-            faster = dot(now.way, over_face(places, i, meets, frames, a))
+            faster = dot(now.way, relative_velocity(places, i, meets, frames, a))
             if now.speed * faster < 0:
                 soonest = min(soonest, -now.speed / faster)
     return soonest

@@ -132,6 +132,6 @@ def _on_plates(places: Places, reach: float, pose: Array, frames: Array) -> int:
         for i in range(len(places.body)):
             if places.face_body[i] >= 0:
                 meets = meeting(places, i, frames)
-                if meets.gap < 0 and dot(meets.across, meets.across) - meets.gap * meets.gap > reach * reach:
+                if meets.gap < 0 and dot(meets.offset, meets.offset) - meets.gap * meets.gap > reach * reach:
                     return n
     return len(pose)

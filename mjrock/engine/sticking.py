@@ -24,7 +24,7 @@ import numpy as np
 
 from ..compiled import inlined
 from ..geometry.frames import coordinates, take_frames, turn_between
-from ..geometry.kinematics import Meeting, Places, depth, gap, meeting, ways_along, where_friction_acts
+from ..geometry.kinematics import Meeting, Places, depth, gap, meeting, tangents_at, where_friction_acts
 from ..geometry.vectors import Vector, dot, minus, spun
 from ..quantities import Array, Integers
 from ..scene.scene import Scene
@@ -160,9 +160,9 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: StepPoses) -
     joints.stuck[j] = i
     if i < 0:
         return
-    meets, ways = meeting(places, i, frames), ways_along(places, i, frames)
+    meets, ways = meeting(places, i, frames), tangents_at(places, i, frames)
     for k in range(len(ways)):
-        place = dot(ways[k], meets.across)
+        place = dot(ways[k], meets.offset)
         if first:
             joints.anchor[j, k] = place
         else:

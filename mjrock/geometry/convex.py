@@ -17,7 +17,7 @@ def cross(a: Array, b: Array) -> Array:
 
 
 def cross_in_space(a: Array, b: Array) -> Array:
-    """The vector product of vectors with shape (..., 3), in a fraction of the time that `numpy.cross` takes for few."""
+    """The vector product of vectors with shape (..., 3); for few vectors it is far faster than `numpy.cross`."""
     product: Array = a[..., [1, 2, 0]] * b[..., [2, 0, 1]] - a[..., [2, 0, 1]] * b[..., [1, 2, 0]]
     return product
 
@@ -32,8 +32,8 @@ def clipped(polygon: Array, window: Array) -> Array:
 
     It is cut by one edge after the other (Sutherland and Hodgman, Communications of the ACM 17, 1974, 32-42).
     """
-    for start, way in zip(window, next_of(window) - window, strict=True):
-        inwards = cross(way, polygon - start)
+    for start, edge in zip(window, next_of(window) - window, strict=True):
+        inwards = cross(edge, polygon - start)
         if (inwards >= 0).all():
             continue
         polygon = kept_of(polygon, inwards)
@@ -62,8 +62,8 @@ def kept_of(polygon: Array, inwards: Array) -> Array:
 def cleaned(polygon: Array, tolerance: float) -> Array:
     """A polygon without corners that lie within a distance of the line between their neighbours [m].
 
-    The flattest corner goes first, and the next is judged without it. No corners are left of a polygon that is nowhere
-    wider.
+    The flattest corner is removed first, and the others are measured again without it. No corners remain of a polygon
+    that is narrower than the distance.
     """
     while len(polygon):
         before, after = np.concatenate([polygon[-1:], polygon[:-1]]), next_of(polygon)
@@ -96,12 +96,12 @@ def polygon_centroid(polygon: Array) -> Array:
 def width(polygon: Array) -> float:
     """The smallest extent of a convex polygon in any direction of its plane [m]."""
     edges = next_of(polygon) - polygon
-    across = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
-    return float(np.ptp(polygon @ across.T, axis=0).min())
+    normals = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
+    return float(np.ptp(polygon @ normals.T, axis=0).min())
 
 
 def within(polygon: Array, points: Array) -> Array:
-    """How far points lie within the edges of a convex polygon, the least of all edges [m], negative outside, (p,)."""
+    """Distance of points from the nearest edge of a convex polygon [m], negative outside, shape (p,)."""
     edges = next_of(polygon) - polygon
     inwards = cross(edges, points[:, None] - polygon) / np.hypot(*edges.T)
     return np.asarray(inwards.min(axis=1))
@@ -123,27 +123,27 @@ def shares(polygon: Array, point: Array) -> Array:
 
 
 def exact_shares(count: int) -> Array:
-    """Shares of places that stand evenly on a length, from end to end, for integrals over it, shape (count,).
+    """Weights of evenly spaced points on a length, ends included, for integrals over it, shape (count,).
 
-    Length, middle and second moment are exact, and all shares are positive: those of the trapezoidal rule, of which
-    each end has given 1 / (12 (count - 2)) to the place beside it. Three are Simpson's 1/6, 4/6, 1/6, which is
-    Lobatto's rule of three, and four his 1/8, 3/8, 3/8, 1/8. The count is at least 3.
+    Length, middle and second moment are exact, and all weights are positive. They are those of the trapezoidal rule,
+    with 1 / (12 (count - 2)) moved from each end to the point beside it. Three points have Simpson's weights 1/6, 4/6,
+    1/6, and four his 1/8, 3/8, 3/8, 1/8. The count is at least 3.
     """
     shares = np.full(count, 1 / (count - 1))
     shares[[0, -1]] /= 2
-    given = 1 / (12 * (count - 2))
-    np.add.at(shares, [0, 1, -2, -1], [-given, given, given, -given])
+    moved = 1 / (12 * (count - 2))
+    np.add.at(shares, [0, 1, -2, -1], [-moved, moved, moved, -moved])
     return shares
 
 
 def spread(polygon: Array, points: int) -> tuple[Array, Array]:
-    """Points that stand for the area of a convex polygon: where [m], shape (p, 2), and how much of it [m2], shape (p,).
+    """Points of a convex polygon [m], shape (p, 2), and the part of its area for each [m2], shape (p,).
 
-    Two are its corners. With more, a polygon of four corners is divided into (points - 1)^2 cells by lines between
-    opposite edges, which makes points x points points. Any other polygon is divided into one quadrilateral per corner,
-    between that corner, the middles of its edges and the centroid, and each of them into m^2 cells, with m the half of
-    points - 1, rounded up. Each cell gives its area to its corners. All areas are positive. Their sum is the area of
-    the polygon, and their mean is its centroid.
+    With `points` = 2 they are its corners. With more, a polygon of four corners is divided into (points - 1)^2 cells by
+    lines between opposite edges, which gives points x points points. Any other polygon is divided into one
+    quadrilateral per corner, between that corner, the middles of its edges and the centroid, and each of them into m^2
+    cells, with m half of points - 1, rounded up. The area of each cell is shared among its corners. All areas are
+    positive. Their sum is the area of the polygon, and the mean of the points, weighted by them, is its centroid.
     """
     if points == 2:
         return polygon, area(polygon) * shares(polygon, polygon_centroid(polygon))
@@ -160,10 +160,10 @@ def spread(polygon: Array, points: int) -> tuple[Array, Array]:
 
 
 def sectioned(polygon: Array, points: int) -> tuple[Array, Array]:
-    """The same points with areas that have the second moments of the polygon too, all positive.
+    """The points of `spread` with areas that give the second moments of the polygon exactly too, all positive.
 
-    The rule of `exact_shares` both ways, times the area that a quadrilateral has about each place, is exact there. The
-    quadrilaterals of other polygons have three points a side at least. `points` is at least 3.
+    They are the weights of `exact_shares` along both sides of a quadrilateral, times the area of the quadrilateral
+    about each point. The quadrilaterals of other polygons have at least three points a side. `points` is at least 3.
     """
     quads, divisions = ([polygon], points - 1) if len(polygon) == 4 else (_quarters(polygon), max(points // 2, 2))
     both = np.multiply.outer(*[exact_shares(divisions + 1)] * 2)
@@ -179,8 +179,8 @@ def _quarters(polygon: Array) -> list[Array]:
 
 
 def _grid(quad: Array, divisions: int) -> tuple[Array, Array]:
-    """Corners of the cells of a quadrilateral [m], shape (divisions + 1, divisions + 1, 2), and the area about each of
-    them, over its share of a unit square [m2]."""
+    """Corners of the cells of a quadrilateral [m], shape (divisions + 1, divisions + 1, 2), and at each the Jacobian of
+    the map from the unit square [m2]."""
     a, b, c, d = quad
     steps = np.linspace(0.0, 1.0, divisions + 1)
     s, t = (each[..., None] for each in np.meshgrid(steps, steps, indexing="ij"))

@@ -1,13 +1,13 @@
 """Frames: where bodies are and how they move, from the coordinates of their joints.
 
-The plane is space with joints left out. A body of the plane has the joints x, z and a rotation about y. A body of space
-has x, y, z and a ball. Poses are displacements from rest in both: (x, z, theta) or (x, y, z, quaternion), of all bodies
-one after the other. Velocities have the rates of the displacements, and the spin: theta' in the plane, and in space the
-angular velocity in the axes of the body, which are those of the world at rest.
+A body of the plane has the joints x, z and a rotation about y. A body of space has x, y, z and a ball. Poses are
+displacements from rest: (x, z, theta) or (x, y, z, quaternion), of all bodies one after the other. Velocities are the
+rates of the displacements and the angular velocity: theta' in the plane, and in space three components in the axes of
+the body, which are those of the world at rest.
 
-A frame is a pose with its rotation computed once: the displacement of the centroid, and R - 1, with R the rotation. R -
-1 keeps the precision of small rotations. The functions of this module and of `poses` are the only ones that know the
-joints.
+A frame is a pose with its rotation computed once: the displacement of the centroid, and R - 1, with R the rotation
+matrix. R - 1 keeps the precision of small rotations. The functions of this module and of `poses` are the only ones that
+know the joints.
 """
 
 from __future__ import annotations

@@ -18,22 +18,22 @@ def connected_parts(pairs: ArrayLike, count: int) -> Integers:
         pairs: the two nodes of each edge, shape (edges, 2).
         count: number of nodes.
     """
-    found = scipy.sparse.csgraph.connected_components(_graph(pairs, count), directed=False)[1]
-    return np.asarray(found, dtype=np.int64)  # as all numbers are: a loop is compiled anew for those of another size
+    components = scipy.sparse.csgraph.connected_components(_graph(pairs, count), directed=False)[1]
+    return np.asarray(components, dtype=np.int64)  # loops are compiled for numbers of this size
 
 
 def nearest_roots(pairs: ArrayLike, count: int, roots: Sequence[int]) -> Integers:
-    """The root that the fewest edges part each node from, or a negative number where none is connected, shape (count,).
+    """The root with the fewest edges to each node, or a negative number where none is connected, shape (count,).
 
     Args:
         pairs: the two nodes of each edge, shape (edges, 2).
         count: number of nodes.
         roots: the nodes from which edges are counted.
     """
-    found = scipy.sparse.csgraph.dijkstra(
+    paths = scipy.sparse.csgraph.dijkstra(
         _graph(pairs, count), directed=False, indices=roots, min_only=True, return_predecessors=True
     )
-    return np.asarray(found[2], dtype=np.int64)
+    return np.asarray(paths[2], dtype=np.int64)
 
 
 def _graph(pairs: ArrayLike, count: int) -> scipy.sparse.coo_array:

@@ -21,7 +21,7 @@ COPLANAR = 1e-5
 THINNEST = 1e-4
 """Smallest thickness of points that bound a body, over their extent [-]."""
 UNCROSSED = 1e-6
-"""Sine of the angle between two edges up to which nothing is across both [-]."""
+"""Sine of the angle between two edges up to which they count as parallel [-]."""
 SHAPES = 512
 """Latest shapes of bodies whose hull, volume and edges are kept: masonry has many blocks of few shapes [-]."""
 
@@ -112,7 +112,7 @@ class Convex:
         return np.array([float((self.corners[list(face)] @ normal).mean()) for face, normal in pairs])
 
     def depth(self, points: Array) -> float:
-        """How deep points reach behind a face [m], the least over the faces, negative for none."""
+        """Penetration of the deepest of some points behind a face [m], the least over the faces; negative outside."""
         return float((self.offsets - (points @ self.normals.T).min(axis=0)).min())
 
     @cached_property
@@ -123,8 +123,8 @@ class Convex:
     @cached_property
     def edges(self) -> Array:
         """Unit vectors along the edges, those that are parallel once, shape (directions, 3)."""
-        ways = self.edge_ends[:, 1] - self.edge_ends[:, 0]
-        return _unlike_ways((ways / np.linalg.norm(ways, axis=1)[:, None]).tobytes())
+        edges = self.edge_ends[:, 1] - self.edge_ends[:, 0]
+        return _distinct_directions((edges / np.linalg.norm(edges, axis=1)[:, None]).tobytes())
 
     @cached_property
     def bulk(self) -> Bulk:
@@ -190,15 +190,15 @@ def _coplanar(points: Array, facets: scipy.spatial.ConvexHull) -> list[list[int]
     """Corners of the facets of each plane, the planes of the largest facets first. Points have an extent of 1."""
     a, b, c = points[facets.simplices].transpose(1, 0, 2)
     areas = np.linalg.norm(cross_in_space(b - a, c - a), axis=1)
-    left = np.ones(len(areas), dtype=bool)
+    unassigned = np.ones(len(areas), dtype=bool)
     planes = []
     for seed in np.argsort(-areas, kind="stable"):
-        if left[seed]:
+        if unassigned[seed]:
             normal, offset = facets.equations[seed, :3], facets.equations[seed, 3]
             near = np.abs(points @ normal + offset) <= COPLANAR
-            same = left & near[facets.simplices].all(axis=1) & (facets.equations[:, :3] @ normal > 0)
+            same = unassigned & near[facets.simplices].all(axis=1) & (facets.equations[:, :3] @ normal > 0)
             same[seed] = True
-            left &= ~same
+            unassigned &= ~same
             planes.append(np.unique(facets.simplices[same]).tolist())
     return planes
 
@@ -251,24 +251,24 @@ def _sides(n: int) -> Faces:
     return tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
 
 
-def ways_across_edges(one: Convex, other: Convex) -> Array:
-    """Unit vectors across an edge of each of two bodies, but of edges that are parallel, shape (n, 3).
+def edge_separating_axes(one: Convex, other: Convex) -> Array:
+    """Unit vectors perpendicular to an edge of each of two bodies, for pairs of edges that are not parallel, (n, 3).
 
-    Beside the normals of their faces these are the directions in which convex bodies can be apart (Gottschalk,
+    Two convex bodies that do not touch are separated along one of these or along the normal of a face (Gottschalk,
     Separating axis theorem, Technical Report TR96-024, UNC Chapel Hill, 1996).
     """
-    across = cross_in_space(one.edges[:, None], other.edges[None]).reshape(-1, 3)
-    lengths = np.linalg.norm(across, axis=1)
-    apart = lengths > UNCROSSED
-    return np.asarray(across[apart] / lengths[apart, None])
+    axes = cross_in_space(one.edges[:, None], other.edges[None]).reshape(-1, 3)
+    lengths = np.linalg.norm(axes, axis=1)
+    unlike_edges = lengths > UNCROSSED
+    return np.asarray(axes[unlike_edges] / lengths[unlike_edges, None])
 
 
 @lru_cache(maxsize=SHAPES)
-def _unlike_ways(vectors: bytes) -> Array:
-    """Unit vectors, those that are parallel once, from the bytes of an array of the shape (n, 3)."""
-    ways = np.frombuffer(vectors).reshape(-1, 3)
-    apart = np.abs(ways @ ways.T) < 1 - 1e-12
-    return frozen(ways[[bool(apart[i, :i].all()) for i in range(len(ways))]])
+def _distinct_directions(vectors: bytes) -> Array:
+    """Unit vectors, one of each set of parallel ones, from the bytes of an array of the shape (n, 3)."""
+    directions = np.frombuffer(vectors).reshape(-1, 3)
+    distinct = np.abs(directions @ directions.T) < 1 - 1e-12
+    return frozen(directions[[bool(distinct[i, :i].all()) for i in range(len(directions))]])
 
 
 def bulk_of(corners: Array, faces: Faces) -> Bulk:

@@ -1,9 +1,8 @@
 """Kinematics of rigid bodies: gaps between points and faces, their rates, slip, lengths of ties.
 
-A contact is a point of one body and a face of another body or of the ground. Everything about it at a pose follows from
-where the two meet: the gap, the normal of the face, and the arms from the two centroids to the point. Rates follow from
-the velocity of the point over the body of the face, in which the face is at rest. The independent solvers in
-`mjrock.reference` and `mjrock.distinct` have formulas of their own.
+A contact is a point of one body and a face of another body or of the ground. At a pose it has a gap, the normal of the
+face, and the arms from the two centroids to the point. Rates follow from the velocity of the point relative to the body
+of the face. The independent solvers in `mjrock.reference` and `mjrock.distinct` have formulas of their own.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ class Places(NamedTuple):
         law: rows of the law of each, see `joint_law.LAW_ROW`, shape (m,).
         k, c: spring [N/m] and dashpot [N s/m] of each, shape (m,), which are columns of the law.
         friction: coefficient of friction, zero for none [-], shape (m,), likewise.
-        tension, cohesion: what the bond of each holds along the normal and along the face without pressure [N], (m,).
+        tension, cohesion: strength of the bond of each in tension, and in shear without pressure [N], shape (m,).
     """
 
     axes: tuple[int, ...]
@@ -68,11 +67,11 @@ class LinkEnds(NamedTuple):
 
     Args:
         axes: of the freedom of the bodies, see `Freedom`.
-        body: the body that each link holds, shape (t,).
-        at: position of the held point from the centroid of that body, at rest [m], shape (t, d).
+        body: the body at the first end of each link, shape (t,).
+        at: position of that end from the centroid of its body, at rest [m], shape (t, d).
         anchor_body: the body of the anchor, -1 for the ground, shape (t,).
         anchor_at: the anchor from the centroid of its body, at rest, or from the origin of the world [m], shape (t, d).
-        between: vector from the anchor to the held point, at rest [m], shape (t, d).
+        between: vector from the anchor to the first end, at rest [m], shape (t, d).
     """
 
     axes: tuple[int, ...]
@@ -126,13 +125,13 @@ class Meeting(NamedTuple):
     Args:
         gap: between point and face [m]; a negative gap is a penetration.
         normal: of the face, in the world.
-        across: from the origin of the face to the point [m].
+        offset: from the origin of the face to the point [m].
         arm, face_arm: from the centroids of the two bodies to the point [m]; of the ground no arm is taken.
     """
 
     gap: float
     normal: Vector
-    across: Vector
+    offset: Vector
     arm: Vector
     face_arm: Vector
 
@@ -157,35 +156,35 @@ class Gap(NamedTuple):
 def meeting(places: Places, i: int, frames: Array) -> Meeting:
     """Where point i and its face meet at a pose.
 
-    The gap is that at rest, and what displacements add to it: displacements are far smaller than the vectors between
-    points and faces, and so is their rounding, which a stiff spring turns into a force.
+    The gap is that at rest plus the change by displacements. These are far smaller than the vectors between points and
+    faces, and so is their rounding, which a stiff spring turns into a force.
     """
     axes, body, face = places.axes, places.body[i], places.face_body[i]
     at, normal, between = vector(places.at, i, axes), vector(places.normal, i, axes), vector(places.between, i, axes)
-    apart, moves = displaced(place(frames, body, axes), frames, body, at), dot(normal, between)
+    relative, drawn_gap = displaced(place(frames, body, axes), frames, body, at), dot(normal, between)
     arm = plus(at, rotation_change(frames, body, at))
     if face < 0:
-        across = plus(between, apart)
-        return Meeting(moves + dot(normal, apart), normal, across, arm, across)
+        offset = plus(between, relative)
+        return Meeting(drawn_gap + dot(normal, relative), normal, offset, arm, offset)
     at = vector(places.face_at, i, axes)
-    apart = minus(apart, displaced(place(frames, face, axes), frames, face, at))
-    across, turning = plus(between, apart), rotation_change(frames, face, normal)
-    face_arm = plus(plus(at, rotation_change(frames, face, at)), across)
-    gap = moves + (dot(normal, apart) + dot(turning, across))
-    return Meeting(gap, plus(normal, turning), across, arm, face_arm)
+    relative = minus(relative, displaced(place(frames, face, axes), frames, face, at))
+    offset, turning = plus(between, relative), rotation_change(frames, face, normal)
+    face_arm = plus(plus(at, rotation_change(frames, face, at)), offset)
+    gap = drawn_gap + (dot(normal, relative) + dot(turning, offset))
+    return Meeting(gap, plus(normal, turning), offset, arm, face_arm)
 
 
 @inlined
 def where_friction_acts(places: Places, meets: Meeting) -> Meeting:
-    """The same meeting with its arms to where MuJoCo lets friction act, halfway between the surface of the sphere and
-    the face."""
+    """The same meeting, with arms to the point at which MuJoCo applies friction: halfway between the surface of the
+    sphere and the face."""
     below = scaled(0.5 * meets.gap + places.radius, meets.normal)
-    return Meeting(meets.gap, meets.normal, meets.across, minus(meets.arm, below), minus(meets.face_arm, below))
+    return Meeting(meets.gap, meets.normal, meets.offset, minus(meets.arm, below), minus(meets.face_arm, below))
 
 
 @inlined
-def over_face(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -> Vector:
-    """Velocity, over the body of the face, of the place of the other body to which the arms lead [m/s].
+def relative_velocity(places: Places, i: int, meets: Meeting, frames: Array, v: Array) -> Vector:
+    """Velocity of point i, at the ends of the arms, relative to the body of its face [m/s].
 
     For accelerations it is the part that is linear in them [m/s2].
     """
@@ -203,8 +202,8 @@ def turned_vector(a: Vector, frames: Array, body: int) -> Vector:
 
 
 @inlined
-def face_ways(normal: Vector, frames: Array, face: int) -> tuple[Vector, ...]:
-    """`ways_along` for a normal at rest and the body of the face."""
+def face_tangents(normal: Vector, frames: Array, face: int) -> tuple[Vector, ...]:
+    """`tangents_at` for a normal at rest and the body of the face."""
     if len(normal) == 2:
         return (turned_vector(tangent(normal), frames, face),)
     first, second = tangents(normal)
@@ -212,23 +211,23 @@ def face_ways(normal: Vector, frames: Array, face: int) -> tuple[Vector, ...]:
 
 
 @inlined
-def ways_along(places: Places, i: int, frames: Array) -> tuple[Vector, ...]:
+def tangents_at(places: Places, i: int, frames: Array) -> tuple[Vector, ...]:
     """Unit vectors along the face of point i: one in the plane, and in space the two `tangents` that turn with it."""
-    return face_ways(vector(places.normal, i, places.axes), frames, places.face_body[i])
+    return face_tangents(vector(places.normal, i, places.axes), frames, places.face_body[i])
 
 
 @inlined
 def swept_along(
-    places: Places, i: int, meets: Meeting, frames: Array, v: Array, velocity: Vector, way: Vector
+    places: Places, i: int, meets: Meeting, frames: Array, v: Array, velocity: Vector, direction: Vector
 ) -> float:
-    """Second rate of the place of point i along a direction of its face, the part that is quadratic in the velocities v
-    [m/s2], see `over_face` for the velocity. The direction turns with the face."""
+    """Acceleration of point i relative to its face, along a direction that turns with the face: the part that is
+    quadratic in the velocities v [m/s2]. `velocity` is the `relative_velocity`."""
     axes, face = places.axes, places.face_body[i]
     turning = spin(frames, v, places.body[i], axes)
-    swept = dot(way, spun(turning, spun(turning, meets.arm)))
+    swept = dot(direction, spun(turning, spun(turning, meets.arm)))
     if face >= 0:
         turning = spin(frames, v, face, axes)
-        swept -= dot(way, spun(turning, plus(spun(turning, meets.face_arm), scaled(2.0, velocity))))
+        swept -= dot(direction, spun(turning, plus(spun(turning, meets.face_arm), scaled(2.0, velocity))))
     return swept
 
 
@@ -236,9 +235,9 @@ def swept_along(
 def gap(places: Places, i: int, frames: Array, v: Array, a: Array) -> Gap:
     """The gap of point i, and how it changes with the velocities v and accelerations a of the bodies."""
     meets = meeting(places, i, frames)
-    velocity, normal = over_face(places, i, meets, frames, v), meets.normal
+    velocity, normal = relative_velocity(places, i, meets, frames, v), meets.normal
     swept = swept_along(places, i, meets, frames, v, velocity, normal)
-    return Gap(meets.gap, dot(normal, velocity), dot(normal, over_face(places, i, meets, frames, a)), swept)
+    return Gap(meets.gap, dot(normal, velocity), dot(normal, relative_velocity(places, i, meets, frames, a)), swept)
 
 
 @inlined
@@ -249,7 +248,7 @@ def depth(places: Places, i: int, frames: Array) -> float:
 
 @inlined
 def push_apart(places: Places, i: int, meets: Meeting, frames: Array, force: Vector, total: Array) -> None:
-    """Add to generalised forces what a force does on the body of point i, and its reaction on that of the face [N]."""
+    """Add a force on the body of point i, and its reaction on that of the face, to generalised forces [N]."""
     push_body(frames, places.body[i], meets.arm, force, total)
     if places.face_body[i] >= 0:
         push_body(frames, places.face_body[i], meets.face_arm, scaled(-1.0, force), total)
@@ -257,20 +256,20 @@ def push_apart(places: Places, i: int, meets: Meeting, frames: Array, force: Vec
 
 @inlined
 def slack(ties: Ties, i: int, frames: Array, v: Array, a: Array) -> Gap:
-    """How much longer tie i may still become before it pulls [m], and how that changes; otherwise as `gap`."""
+    """Slack of tie i: the elongation up to which it does not pull [m], and its rates, as those of a `gap`."""
     links = ties.links
     at, axes, anchor = ends(links, i, frames), links.axes, links.anchor_body[i]
-    across, velocity = at.across, parting(links, i, at, frames, v)
+    span, velocity = at.span, link_velocity(links, i, at, frames, v)
     turning = spin(frames, v, links.body[i], axes)
     centripetal = spun(turning, spun(turning, at.arm))
     if anchor >= 0:
         turning = spin(frames, v, anchor, axes)
         centripetal = minus(centripetal, spun(turning, spun(turning, at.anchor_arm)))
-    length = math.sqrt(dot(across, across))
-    direction = scaled(1 / length, across)
+    length = math.sqrt(dot(span, span))
+    direction = scaled(1 / length, span)
     longer = dot(direction, velocity)
     swept = dot(direction, centripetal) + (dot(velocity, velocity) - longer * longer) / length
-    pulling = dot(direction, parting(links, i, at, frames, a))
+    pulling = dot(direction, link_velocity(links, i, at, frames, a))
     return Gap(ties.reach[i] - length, -longer, -pulling, -swept)
 
 
@@ -284,9 +283,9 @@ def opening(places: Places, ties: Ties, i: int, frames: Array, v: Array, a: Arra
 
 @inlined
 def stretch(ties: Ties, i: int, frames: Array, v: Array) -> tuple[float, float]:
-    """Elastic elongation of tie i, and by how much it has just yielded either way [m]. Its reach is brought up to date.
+    """Elastic elongation of tie i, and by how much it yields at this pose, in tension or in compression [m].
 
-    The velocities v of the bodies make no difference.
+    The reach of the tie is changed by the yielding. The velocities v of the bodies make no difference.
     """
     pulled = -slack(ties, i, frames, v, v).value
     yielded = max(pulled - ties.stretch[i], 0.0)
@@ -335,11 +334,11 @@ class Ends(NamedTuple):
     """The two ends of a link at a pose.
 
     Args:
-        across: from the anchor to the point [m].
+        span: from the anchor to the point [m].
         arm, anchor_arm: from the centroids of the two bodies to them [m]; on the ground there is no such arm.
     """
 
-    across: Vector
+    span: Vector
     arm: Vector
     anchor_arm: Vector
 
@@ -350,17 +349,17 @@ def ends(links: LinkEnds, i: int, frames: Array) -> Ends:
     axes, body, anchor = links.axes, links.body[i], links.anchor_body[i]
     at = vector(links.at, i, axes)
     arm = plus(at, rotation_change(frames, body, at))
-    across = plus(vector(links.between, i, axes), plus(place(frames, body, axes), minus(arm, at)))
+    span = plus(vector(links.between, i, axes), plus(place(frames, body, axes), minus(arm, at)))
     if anchor < 0:
-        return Ends(across, arm, arm)
+        return Ends(span, arm, arm)
     at = vector(links.anchor_at, i, axes)
     anchor_arm = plus(at, rotation_change(frames, anchor, at))
-    return Ends(minus(across, plus(place(frames, anchor, axes), minus(anchor_arm, at))), arm, anchor_arm)
+    return Ends(minus(span, plus(place(frames, anchor, axes), minus(anchor_arm, at))), arm, anchor_arm)
 
 
 @inlined
-def parting(links: LinkEnds, i: int, at: Ends, frames: Array, v: Array) -> Vector:
-    """Velocity of the point of link i over its anchor [m/s]; for accelerations the part that is linear in them."""
+def link_velocity(links: LinkEnds, i: int, at: Ends, frames: Array, v: Array) -> Vector:
+    """Velocity of link i's point relative to its anchor [m/s]; for accelerations the part that is linear in them."""
     axes, body, anchor = links.axes, links.body[i], links.anchor_body[i]
     velocity = plus(linear(v, body, axes), spun(spin(frames, v, body, axes), at.arm))
     if anchor < 0:

@@ -1,4 +1,4 @@
-"""Bodies of convex parts: how one that is not convex is cut into them, and the edges that they show together."""
+"""Bodies that are not convex: how they are divided into convex parts, and the edges of their surface."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .hull import Convex, Hull, area_vector, bulk_of, face_edges, hull_of, trian
 ON_PLANE = 1e-6
 """Distance from a plane below which a corner lies on it, over the extent of the body [-]."""
 ONE_PART = 1e-6
-"""Difference of the volume of the hull of two parts from that of both below which they are one, over their sum [-]."""
+"""Volume that the hull of two parts adds to them, over that of the hull, up to which they are joined into one [-]."""
 CELLS_A_PART = 3
-"""How many cells are cut at most, for each part that may come of them."""
+"""Largest number of cells that are cut, over the largest number of parts [-]."""
 
 
 def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) -> list[Array]:
@@ -89,7 +89,7 @@ def _plane(cell: Array, polygons: Sequence[Array]) -> tuple[Array, float] | None
 
 
 def _kept(polygon: Array, normal: Array, offset: float) -> Array:
-    """What of a polygon lies on the side of a plane that its normal points to; nothing of one that lies in it."""
+    """The part of a polygon on the side of a plane to which its normal points; none of a polygon in the plane."""
     above = polygon @ normal - offset
     if above.max() <= ON_PLANE:
         return np.zeros((0, 3))
@@ -122,17 +122,17 @@ def _winding(point: Array, triangles: Array) -> float:
 
 
 def _together(parts: list[Array]) -> list[Array]:
-    """Parts of which those whose union is convex are one."""
+    """Parts, with those joined whose union is convex."""
     volumes = [_volume(part) for part in parts]
     while True:
         for i, j in combinations(range(len(parts)), 2):
             if not _touch(parts[i], parts[j]):
                 continue
             both = np.concatenate([parts[i], parts[j]])
-            if (found := _volume(both)) - volumes[i] - volumes[j] <= ONE_PART * found:
+            if (volume := _volume(both)) - volumes[i] - volumes[j] <= ONE_PART * volume:
                 kept = [k for k in range(len(parts)) if k not in (i, j)]
                 parts = [both[list(hull_of(both).corners)], *(parts[k] for k in kept)]
-                volumes = [found, *(volumes[k] for k in kept)]
+                volumes = [volume, *(volumes[k] for k in kept)]
                 break
         else:
             return parts
@@ -140,8 +140,8 @@ def _together(parts: list[Array]) -> list[Array]:
 
 def _touch(part: Array, other: Array) -> bool:
     """Whether the bounds of two parts touch."""
-    apart = np.maximum(part.min(axis=0) - other.max(axis=0), other.min(axis=0) - part.max(axis=0))
-    return bool((apart <= ON_PLANE).all())
+    gap = np.maximum(part.min(axis=0) - other.max(axis=0), other.min(axis=0) - part.max(axis=0))
+    return bool((gap <= ON_PLANE).all())
 
 
 def _volume(points: Array) -> float:
@@ -160,8 +160,8 @@ ALONG_EDGE = 1e-6
 def creases_of(parts: Sequence[Convex]) -> Array:
     """Ends of the edges of a body [m], shape (n, 2, 3).
 
-    An edge of a part is cut at the corners of other parts that lie on it. A piece of it is shown unless the points
-    around it lie all within the body, or those of one half of a circle do: its surface is plane there.
+    An edge of a part is cut at the corners of other parts that lie on it. A piece of it is an edge of the body unless
+    all points on a circle around it lie within the body, or just those of one half, where the surface is plane.
     """
     edges = np.concatenate([part.edge_ends for part in parts])
     if len(parts) == 1:
@@ -193,7 +193,7 @@ def _cut(edge: Array, corners: Array, near: float) -> Array:
 
 
 def _circle(along: Array) -> Array:
-    """Unit vectors square to a vector, all around it, shape (PROBES, 3)."""
+    """Unit vectors perpendicular to a vector, all around it, shape (PROBES, 3)."""
     first = np.cross(along, np.eye(3)[np.abs(along).argmin()])
     first /= np.linalg.norm(first)
     second = np.cross(along, first) / np.linalg.norm(along)

@@ -1,7 +1,8 @@
 """Poses of all bodies as arrays: at rest, moved by velocities, and the rates of their coordinates.
 
-A velocity of space turns a body about its own axes, so that neither the sum of a pose and a velocity nor the difference
-of two poses has a meaning for its quaternion. All arrays may have further axes before the last, for many poses at once.
+Angular velocities of space are about the axes of the body, and rotations are quaternions. So neither the sum of a pose
+and a motion nor the difference of two poses is a pose or a motion. All arrays may have further axes before the last,
+for many poses at once.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ def angle_of(pose: Array) -> Array:
 
 
 def rotations(pose: Array) -> Array:
-    """Matrices that turn vectors as bodies are turned from rest, shape (..., d, d), of poses of shape (..., 3) in the
-    plane and (..., 7) in space."""
+    """Rotation matrices of bodies from rest, shape (..., d, d), of poses of shape (..., 3) in the plane and (..., 7) in
+    space."""
     if pose.shape[-1] == PLANE.nq:
         sine, cosine = np.sin(pose[..., 2]), np.cos(pose[..., 2])
         return np.stack([np.stack([cosine, sine], axis=-1), np.stack([-sine, cosine], axis=-1)], axis=-2)
@@ -40,7 +41,7 @@ def rotations(pose: Array) -> Array:
 
 
 def rotated(vectors: Array, pose: Array) -> Array:
-    """Vectors of bodies at rest, shape (..., m, d), as they are turned at poses of shape (..., 3) or (..., 7)."""
+    """Vectors of bodies, given at rest, shape (..., m, d), rotated to poses of shape (..., 3) or (..., 7)."""
     return np.asarray(np.matmul(vectors, np.swapaxes(rotations(pose), -1, -2)))
 
 
@@ -58,7 +59,7 @@ def at_rest(bodies: int, freedom: Freedom) -> Array:
 
 
 def moved(pose: Array, motion: Array, freedom: Freedom) -> Array:
-    """A pose after a motion: a velocity that has lasted for a unit of time.
+    """A pose after a motion.
 
     Args:
         pose: shape (..., bodies nq).

@@ -1,8 +1,8 @@
-"""Vectors as tuples, for compiled functions: one text for the plane and for space.
+"""Vectors as tuples, for compiled functions of the plane and of space.
 
-A vector of the plane is (x, z), and one of space is (x, y, z). A spin is (about y,) in the plane, positive where z
-turns towards x, and the three components of an angular velocity in space. numba compiles each function for the lengths
-of the tuples that it meets, so that the plane costs what it would cost alone.
+A vector of the plane is (x, z), and one of space is (x, y, z). A spin, or angular velocity, is (about y,) in the plane,
+positive from z towards x, and has three components in space. numba compiles each function for the lengths of the tuples
+that it gets, so that the plane takes no time for the third axis.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ def tangent(normal: Vector) -> Vector:
 
 @inlined
 def tangents(normal: Vector) -> tuple[Vector, Vector]:
-    """Two unit vectors along a face of space, square to each other and to its unit normal.
+    """Two unit vectors along a face of space, perpendicular to each other and to its unit normal.
 
     They lose no digits near any axis (Duff et al., Building an orthonormal basis, revisited, Journal of Computer
     Graphics Techniques 6(1), 2017).

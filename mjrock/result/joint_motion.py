@@ -273,7 +273,7 @@ def _joint_gaps(scene: Scene, points: JointPoints, pose: Array, shift: Array) ->
 @inlined
 def _along(places: Places, i: int, meets: Meeting, frames: Array) -> Vector:
     """Position of point i along its face, from the origin of the face, in the axes of the face [m]."""
-    along, face = minus(meets.across, scaled(meets.gap, meets.normal)), places.face_body[i]
+    along, face = minus(meets.offset, scaled(meets.gap, meets.normal)), places.face_body[i]
     return along if face < 0 else plus(along, inverse_rotation_change(frames, face, along))
 
 
@@ -283,7 +283,7 @@ def _met(places: Places, i: int, frames: Array, shift: Array, support: int) -> M
     meets = meeting(places, i, frames)
     if support < 0:
         return meets
-    across = minus(meets.across, vector(shift, support, places.axes))
+    across = minus(meets.offset, vector(shift, support, places.axes))
     return Meeting(dot(meets.normal, across), meets.normal, across, meets.arm, across)
 
 

@@ -17,7 +17,7 @@ from scipy.sparse import csr_array
 
 from ..compiled import compiled, inlined
 from ..geometry.frames import Freedom, frames_of, push_body, take_frames
-from ..geometry.kinematics import LinkEnds, ends, parting
+from ..geometry.kinematics import LinkEnds, ends, link_velocity
 from ..geometry.vectors import dot, scaled
 from ..problem.wall.effect import damping_coefficient, resistance
 from ..quantities import Array
@@ -33,8 +33,8 @@ class Dampers(NamedTuple):
 @inlined
 def stretching(dampers: Dampers, i: int, frames: Array, v: Array) -> float:
     """Rate of the length of damper i [m/s]."""
-    at = ends(dampers.links, i, frames)
-    return dot(at.across, parting(dampers.links, i, at, frames, v)) / math.sqrt(dot(at.across, at.across))
+    link = ends(dampers.links, i, frames)
+    return dot(link.span, link_velocity(dampers.links, i, link, frames, v)) / math.sqrt(dot(link.span, link.span))
 
 
 @inlined
@@ -47,11 +47,11 @@ def damping_forces(dampers: Dampers, frames: Array, v: Array, force: Array) -> N
 @inlined
 def push_ends(links: LinkEnds, i: int, force: float, frames: Array, total: Array) -> None:
     """Add a force that pushes the ends of link i apart [N] to generalised forces."""
-    at = ends(links, i, frames)
-    pushed = scaled(force / math.sqrt(dot(at.across, at.across)), at.across)
-    push_body(frames, links.body[i], at.arm, pushed, total)
+    link = ends(links, i, frames)
+    pushed = scaled(force / math.sqrt(dot(link.span, link.span)), link.span)
+    push_body(frames, links.body[i], link.arm, pushed, total)
     if links.anchor_body[i] >= 0:
-        push_body(frames, links.anchor_body[i], at.anchor_arm, scaled(-1.0, pushed), total)
+        push_body(frames, links.anchor_body[i], link.anchor_arm, scaled(-1.0, pushed), total)
 
 
 @inlined
@@ -77,7 +77,7 @@ def damping_rate(dampers: Dampers, pose: Array, principal: tuple[csr_array, Arra
     return max(rates)
 
 
-def taken_by_dampers(dampers: Dampers, pose: Array, mean: Array, width: Array, force: Array) -> Array:
+def dissipated_by_dampers(dampers: Dampers, pose: Array, mean: Array, width: Array, force: Array) -> Array:
     """Energy that each damper dissipates in the window of each step [J], shape (steps, d).
 
     Args:

@@ -91,10 +91,10 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
         require_carried(masonry, effects)
         raise unsettled(masonry, effects, error.pose) from None
     if any(masonry.bonds):
-        require_held(scene, pose)
+        require_bonds_hold(scene, pose)
 
 
-def require_held(scene: Scene, pose: Array) -> None:
+def require_bonds_hold(scene: Scene, pose: Array) -> None:
     """Raise ValueError with the names of the joints whose bonds need more than their strength at the pose of rest."""
     contacts = scene.contacts
     push = scene.potential.pushes(pose.ravel())[: len(contacts.k)]
@@ -134,10 +134,10 @@ def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> Val
             f"the masonry cannot stand: nothing keeps {named(slide)} from sliding, however large k_n is; "
             f"joints that need friction, of any coefficient above 0: {named(joints)}"
         )
-    gone = named(gone_in(masonry, pose))
+    fallen = named(fallen_in(masonry, pose))
     if stands_on_stiff_joints(scene):
         return ValueError(
-            f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {gone} would fall; "
+            f"the masonry cannot stand: rigid blocks would, but on joints of this stiffness {fallen} would fall; "
             "raise k_n"
         )
     if at_limit := nudged(masonry, applied(masonry, effects)):
@@ -148,27 +148,29 @@ def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> Val
             f"{'more friction' if friction else 'more to stand on'}, or a support or a tie"
         )
     return ValueError(
-        f"no pose of rest was found: {gone} would slide down from the drawn pose on joints of any stiffness that was "
+        f"no pose of rest was found: {fallen} would slide down from the drawn pose on joints of any stiffness that was "
         "tried, although limit analysis finds forces that hold rigid blocks. These joints hold by friction where they "
         "are pressed together, as by wedges, and the weight alone does not press them enough; give the joints more "
         "friction, or the blocks a support or a tie"
     )
 
 
-def gone_in(masonry: Masonry, pose: Array) -> tuple[str, ...]:
+def fallen_in(masonry: Masonry, pose: Array) -> tuple[str, ...]:
     """Names of the blocks that have fallen at the end of a search for the pose of rest, of shape (free, nq)."""
     moved = np.linalg.norm(pose[:, : masonry.freedom.translations], axis=1)
     return tuple(
-        masonry.names[i] for i, far in zip(masonry.free, moved, strict=True) if far >= SHARE_OF_FARTHEST * moved.max()
+        masonry.names[i]
+        for i, distance in zip(masonry.free, moved, strict=True)
+        if distance >= SHARE_OF_FARTHEST * moved.max()
     )
 
 
 def wedged(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[str, ...]:
-    """Names of blocks that stand as rigid blocks only by wedging, although `falling` does not name them; none where the
+    """Names of blocks that rigid blocks would hold by wedging alone, which `falling` does not name; none where the
     masonry comes to rest.
 
-    Friction would hold them if their joints were pressed together, but from joints without load the weight does not
-    press them enough, on joints of any stiffness.
+    Friction would hold them if their joints were pressed together. The weight alone does not press joints enough that
+    start without load, however stiff they are.
     """
     scene = standing_masonry(masonry, effects)
     try:
@@ -176,12 +178,12 @@ def wedged(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[str, ...
     except UnsettledError as error:
         if slippery(masonry)[0] or stands_on_stiff_joints(scene) or nudged(masonry, applied(masonry, effects)):
             return ()
-        return gone_in(masonry, error.pose)
+        return fallen_in(masonry, error.pose)
     return ()
 
 
 def stands_on_stiff_joints(scene: Scene) -> bool:
-    """Whether masonry comes to rest on joints that give by no more than SETTLEMENT_OF_STIFF under all of its weight.
+    """Whether masonry comes to rest on joints that settle by no more than SETTLEMENT_OF_STIFF under all of its weight.
 
     Joints that are stiff for one block are soft for a tall stack, which buckles on them.
     """

@@ -1,7 +1,7 @@
 """Masses of bodies that turn about axes other than their principal ones.
 
 The axes of a body of space are those of the world at rest. Its mass matrix is m, m, m and the tensor of inertia about
-its centroid in these axes. `masses` are the diagonals of all bodies, and `products` what stands beside them: Ixy, Ixz
+its centroid in these axes. `masses` are the diagonals of all bodies, and `products` the products of inertia Ixy, Ixz
 and Iyz of each body, shape (n, 3). In the plane there are none, shape (0, 3).
 """
 
@@ -16,7 +16,7 @@ from ..linear import block_diagonal
 from ..quantities import Array
 
 PRODUCT_ROUNDING = 1e-12
-"""Product of inertia that is put down to rounding, over the sum of the moments [-]."""
+"""Product of inertia that counts as rounding, over the sum of the moments [-]."""
 
 
 def mass_diagonals(mass: Array, inertia: Array) -> Array:

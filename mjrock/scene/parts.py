@@ -69,7 +69,7 @@ def keep_array(
 def require_values(
     label: str, values: NDArray[Any], above: float | None = None, least: float | None = None, infinite: bool = False
 ) -> None:
-    """Raise a ValueError for a value that is no number, infinite where none may be, or not above or from `least` on."""
+    """Raise a ValueError for a value that is not finite, not above `above`, or below `least`."""
     if np.isnan(values).any() or not (infinite or np.isfinite(values).all()):
         raise ValueError(f"{label} holds a value that is not finite")
     if above is not None and not (values > above).all():
@@ -333,7 +333,7 @@ class Links:
             raise ValueError("reach of the links is infinite for a link with a spring; give it a length")
 
     def _keep_law(self) -> None:
-        """Check and keep the laws as rows. Those numbers may be infinite that are so when they are left out."""
+        """Check the laws and keep them as rows. A number may be infinite if its default is."""
         given = self.law if np.size(self.law) else [LinkLaw()] * len(self.names)
         try:
             laws = given if isinstance(given, np.recarray) else [LinkLaw(*law) for law in given]

@@ -36,11 +36,11 @@ from ..geometry.kinematics import (
     displacement,
     meeting,
     opening,
-    over_face,
+    relative_velocity,
     slack,
     stretch,
     swept_along,
-    ways_along,
+    tangents_at,
     where_friction_acts,
 )
 from ..geometry.poses import at_rest
@@ -104,10 +104,11 @@ def force_energy(forces: AppliedForces, frames: Array) -> float:
 
 
 def energies(structure: Structure, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
-    """Kinetic, potential and elastic energy at the steps of a motion [J], shape (steps, 3), and what ties have taken.
+    """Kinetic, potential and elastic energy at the steps of a motion [J], shape (steps, 3), and what ties have
+    dissipated up to each step by yielding [J], shape (steps, t).
 
     The potential energy is that of the weight above the position of rest of the centroids, and that of the constant
-    forces. Ties yield as the motion goes on. What they have taken up to each step has the shape (steps, t) [J].
+    forces.
 
     Args:
         structure: what has energy.
@@ -115,17 +116,17 @@ def energies(structure: Structure, q: Array, v: Array, broken: Integers | None =
         broken: the step from which each tie no longer acts, shape (t,), as many as there are steps or more for one that
             does not break. None breaks none.
     """
-    parts, taken = np.zeros((len(q), 3)), np.zeros((len(q), len(structure.ties.k)))
+    parts, dissipated = np.zeros((len(q), 3)), np.zeros((len(q), len(structure.ties.k)))
     ties = structure.ties._replace(reach=np.array(structure.ties.reach))
-    freedom, until = structure.places.freedom, np.full(taken.shape[1], len(q)) if broken is None else broken
+    freedom, until = structure.places.freedom, np.full(dissipated.shape[1], len(q)) if broken is None else broken
     frames = freedom.frames(q.shape[1] // freedom.nq)
-    _energies(structure._replace(ties=ties), frozen(q), frozen(v), frames, until, parts, taken)
-    return parts, taken
+    _energies(structure._replace(ties=ties), frozen(q), frozen(v), frames, until, parts, dissipated)
+    return parts, dissipated
 
 
 @compiled
 def _energies(
-    structure: Structure, q: Array, v: Array, frames: Array, broken: Integers, parts: Array, taken: Array
+    structure: Structure, q: Array, v: Array, frames: Array, broken: Integers, parts: Array, dissipated: Array
 ) -> None:
     places, ties, masses = structure.places, structure.ties, structure.masses
     for step in range(len(q)):
@@ -140,15 +141,15 @@ def _energies(
             parts[step, 2] += spring_energy(places, i, frames)
         for i in range(len(ties.k)):
             if step >= broken[i]:
-                taken[step, i] = taken[step - 1, i] if step else 0.0
+                dissipated[step, i] = dissipated[step - 1, i] if step else 0.0
                 if ties.reach[i] < math.inf:  # it yields up to its limit, and breaks
-                    left = ties.limit[i] - ties.stretch[i] - ties.reach[i]
-                    taken[step, i] += ties.k[i] * ties.stretch[i] * left
+                    remaining = ties.limit[i] - ties.stretch[i] - ties.reach[i]
+                    dissipated[step, i] += ties.k[i] * ties.stretch[i] * remaining
                     ties.reach[i] = math.inf
                 continue
             stretched, yielded = stretch(ties, i, frames, v[step])
             parts[step, 2] += 0.5 * ties.k[i] * stretched * stretched
-            taken[step, i] = (taken[step - 1, i] if step else 0.0) + ties.k[i] * abs(stretched) * yielded
+            dissipated[step, i] = (dissipated[step - 1, i] if step else 0.0) + ties.k[i] * abs(stretched) * yielded
 
 
 def breaks(ties: Ties, q: Array) -> Integers:
@@ -229,7 +230,7 @@ class Potential:
         return values
 
     def pressed(self, pose: Array) -> Array:
-        """How far each spring is pressed or stretched [m], zero where it is open, shape (m + t,)."""
+        """Deformation of each spring, zero where it is open [m], shape (m + t,)."""
         pressed: Array = np.maximum(-self.openings(pose), 0.0)
         return pressed
 
@@ -258,7 +259,7 @@ class Potential:
         return tuple(entries(values, bodies, len(masses)) for values in rates)
 
     def slips(self, pose: Array) -> Array:
-        """How far each point has moved along its face from rest, see `slip_rates` [m], shape (m, ways)."""
+        """Displacement of each point along its face from rest, see `slip_rates` [m], shape (m, directions)."""
         places = self.structure.places
         slips = np.empty((len(places.body), places.freedom.translations - 1))
         _slips(places, frames_of(pose, places.freedom), slips)
@@ -314,21 +315,22 @@ class Potential:
 
         Args:
             pose: of shape (n nq,).
-            drag: friction on the bodies of the points along the ways of `slip_rates` [N], shape (m, ways), or None.
+            drag: friction on the bodies of the points along the tangential directions of `slip_rates` [N], shape
+                (m, directions), or None.
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
         frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
-        acting = self.pushes(pose)
+        pushes = self.pushes(pose)
         drag = np.zeros((len(places.body), places.freedom.translations - 1)) if drag is None else drag
-        bends = acting != 0
+        bends = pushes != 0
         bends[: len(drag)] |= drag.any(axis=1)
         which = np.flatnonzero(bends)
         parts = []
         for start in range(0, max(len(which), 1), BENT_AT_ONCE):
             some = which[start : start + BENT_AT_ONCE]
             bent = np.zeros((len(some), 2 * places.freedom.nv, 2 * places.freedom.nv))
-            _curvatures(places, ties, frames, none, (acting, drag), some, bent)
+            _curvatures(places, ties, frames, none, (pushes, drag), some, bent)
             parts.append(of_pairs(bent, self._bodies[some], len(masses)))
         of_springs = parts[0] if len(parts) == 1 else summed(parts)
         return csr_array(of_springs + _turning_forces(forces, frames, len(masses)))
@@ -386,14 +388,14 @@ def _rates(places: Places, ties: Ties, frames: Array, unit: Array, none: Array, 
 def _slip_rates(places: Places, frames: Array, unit: Array, rates: Array) -> None:
     nv = len(unit) // len(frames)
     for i in range(len(places.body)):
-        bodies, ways = (places.body[i], places.face_body[i]), ways_along(places, i, frames)
+        bodies, tangents = (places.body[i], places.face_body[i]), tangents_at(places, i, frames)
         meets = where_friction_acts(places, meeting(places, i, frames))
         for side in range(2):
             for j in range(nv if bodies[side] >= 0 else 0):
                 unit[nv * bodies[side] + j] = 1.0
-                velocity = over_face(places, i, meets, frames, unit)
-                for way in range(len(ways)):
-                    rates[way, i, side, j] = dot(ways[way], velocity)
+                velocity = relative_velocity(places, i, meets, frames, unit)
+                for k in range(len(tangents)):
+                    rates[k, i, side, j] = dot(tangents[k], velocity)
                 unit[nv * bodies[side] + j] = 0.0
 
 
@@ -402,13 +404,13 @@ def _slips(places: Places, frames: Array, slips: Array) -> None:
     for i in range(len(slips)):
         axes, body, face = places.axes, places.body[i], places.face_body[i]
         at = vector(places.at, i, axes)
-        apart = displaced(place(frames, body, axes), frames, body, at)
-        ways = ways_along(places, i, frames)
+        relative = displaced(place(frames, body, axes), frames, body, at)
+        tangents = tangents_at(places, i, frames)
         if face >= 0:
             at = plus(vector(places.face_at, i, axes), vector(places.between, i, axes))
-            apart = minus(apart, displaced(place(frames, face, axes), frames, face, at))
-        for way in range(len(ways)):
-            slips[i, way] = dot(ways[way], apart)
+            relative = minus(relative, displaced(place(frames, face, axes), frames, face, at))
+        for k in range(len(tangents)):
+            slips[i, k] = dot(tangents[k], relative)
 
 
 @compiled
@@ -426,7 +428,7 @@ def _curvatures(
 
     What is quadratic in the velocities in the second rate of an opening is its second derivative along them."""
     nv, unit, (push, drag) = len(none) // len(frames), none, forces
-    for at, i in enumerate(which):
+    for slot, i in enumerate(which):
         body, other = _bodies(places, ties, i)
         count = 2 * nv if other >= 0 else nv
         for p in range(count):
@@ -439,18 +441,18 @@ def _curvatures(
                     bent = push[i] * opening(places, ties, i, frames, unit, unit).swept
                     if i < len(drag):
                         bent += swept_by_friction(places, i, frames, unit, drag)
-                    curvature[at, p, r] -= 0.25 * sign * bent
+                    curvature[slot, p, r] -= 0.25 * sign * bent
                     unit[row], unit[column] = 0.0, 0.0
-                curvature[at, r, p] = curvature[at, p, r]
+                curvature[slot, r, p] = curvature[slot, p, r]
 
 
 @inlined
 def swept_by_friction(places: Places, i: int, frames: Array, v: Array, drag: Array) -> float:
-    """Power of friction in the second rates of slip, the part that is quadratic in the velocities."""
-    meets, ways, power = meeting(places, i, frames), ways_along(places, i, frames), 0.0
-    velocity = over_face(places, i, meets, frames, v)
-    for way in range(len(ways)):
-        power += drag[i, way] * swept_along(places, i, meets, frames, v, velocity, ways[way])
+    """Friction times the second rates of slip, the part of it that is quadratic in the velocities."""
+    meets, tangents, power = meeting(places, i, frames), tangents_at(places, i, frames), 0.0
+    velocity = relative_velocity(places, i, meets, frames, v)
+    for k in range(len(tangents)):
+        power += drag[i, k] * swept_along(places, i, meets, frames, v, velocity, tangents[k])
     return power
 
 

@@ -1,20 +1,20 @@
-"""Bodies at rest: a pose and friction within its cones in which the springs of contacts and ties carry the weight.
+"""Bodies at rest: a pose, and friction within its limit, at which the springs of contacts and ties carry the weight.
 
-Contacts push only. Along the face each has a spring with a slider that slips where the spring would pass the friction.
-The springs are those of the joints, or nearly rigid ones where joints stick rigidly. Many poses may be at rest, as
-sliders may stand anywhere. The one that is sought is that in which every spring has been stretched once, from the drawn
-pose: of all that need no slip it has the least energy in its springs. The equations have one text, so that the pose
-depends on no path and on no rounding.
+Contacts push only. Along the face each has a spring in series with a slider, which slips where the force of the spring
+would exceed the limit of friction. The springs are those of the joints, or nearly rigid ones where joints stick
+rigidly. Sliders may stand anywhere, so that many poses may be at rest. The search finds the one to which every spring
+is loaded once, from the drawn pose: of all that need no slip it has the least energy in its springs. It depends
+neither on the path of the search nor on rounding.
 
-The search is Newton's method. Its exact step, in which the limit of friction follows the pressure, or a part of it is
-taken where less force is missing then. Elsewhere a step is taken that lowers the energy at the present limits. Keeping
-the shear stiffness of slipping contacts converges safely and slowly; dropping it converges fast or not at all. The
-share of the stiffness that is kept is therefore halved from pose to pose, and is whole again when more force is missing
-than before.
+The search is Newton's method with steps of two kinds. An exact step follows the derivatives of all forces, and the
+limit of friction grows with the pressure. It is taken, whole or in part, where less force is missing after it.
+Otherwise a step is taken that lowers the energy at the present limits of friction. With the shear stiffness of slipping
+contacts such steps converge safely and slowly; without it they converge fast or not at all. The share of it that is
+kept is therefore halved from pose to pose, and is whole again when more force is missing than before.
 
-A block that slips on both of its supports is dragged along by the one on which it presses more, and presses more on it
-then. More force is missing on the way to where it no longer slips there. A search that makes no progress for some poses
-therefore lets all that slips slide, whatever is missing, as far as the energy falls.
+A block that slips on both of its supports is dragged along by the one on which it presses more, and then presses on it
+more. More force is missing until it no longer slips there. A search that makes no progress for some poses therefore
+lets all contacts that slip slide without stiffness, whatever force is missing, as far as the energy falls.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ DISPLACEMENT_ROUNDING = 16 * np.finfo(float).eps
 """Rounding of the displacements of bodies and of the lengths of ties, over these [-]."""
 LEANING = 1e-6
 """Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
-ROTATION_OF_FALLEN, WAY_OF_FALLEN = 0.5, 1e2
+ROTATION_OF_FALLEN, DISPLACEMENT_OF_FALLEN = 0.5, 1e2
 """Rotation [rad], and displacement in radii of inertia, beyond which a body no longer stands."""
 NEGLIGIBLE_STIFFNESS = 1e-12
 """Negative stiffness that counts as rounding, over the largest [-]."""
@@ -56,14 +56,15 @@ ENERGY_ROUNDING, RAISES, SMALLEST_PART = 1e-13, 1e-6, 1e-6
 the energy, over itself, as friction acts halfway between point and face where slip is that of the point [-]; and the
 smallest part of a step that is tried."""
 BEGINNING = LOOSE, 1.0, SLIPPING, np.inf
-"""What is lent, shares and least shares of slipping contacts, and the force that was missing, where a search begins."""
+"""Where a search begins: stiffness that is lent to all motions, share of the shear stiffness of slipping contacts, its
+least value, and force that was missing before."""
 IMPERFECTION = 1e-5
 """Forces on all bodies by which a structure is no longer its own mirror image, over the largest that is missing [-]."""
 PUSH = 1e-2
 """First motion of a push off a pose at which the bodies balance and do not stand, over the deepest penetration [-]."""
 AS_LOW = 1e-3
-"""Difference of energies up to which two ways to fall are alike, over what is lost, and sum of the momenta of bodies
-that counts as none, over the sum of their sizes [-]."""
+"""Difference of energies up to which falls in the two senses of a direction are alike, over the energy that is lost,
+and total momentum of the bodies that counts as none, over the sum of their magnitudes [-]."""
 LITTLE_PROGRESS = 0.5
 """Share of the missing force that an exact step must make up for, and of that share a part of the step [-]."""
 PARTS_OF_STEP, EXACT_STEPS = (1.0, 0.5, 0.25, 0.125, 0.0625), 30
@@ -102,8 +103,8 @@ class Search(NamedTuple):
 
     Args:
         shear: stiffness of the contacts along their faces [N/m], shape (m,).
-        limited: whether friction has its limit. Without one it holds the mean slip of the points of a joint that touch:
-            points that were all held would lock its rotation.
+        limited: whether friction has its limit. Without one the springs resist the mean slip of the points of a joint
+            that touch: springs at every point would lock its rotation.
         bar: counts the poses that are tried.
     """
 
@@ -113,7 +114,7 @@ class Search(NamedTuple):
 
 
 class Sliders(NamedTuple):
-    """Springs of the contacts along their faces, which slip where they would pass the friction.
+    """Springs of the contacts along their faces, each in series with a slider that has a limit of friction.
 
     Args:
         stiffness: of the springs [N/m], shape (m,).
@@ -126,13 +127,13 @@ class Sliders(NamedTuple):
     shares: csr_array
 
 
-class Grips(NamedTuple):
+class PointFriction(NamedTuple):
     """Friction of the points at a pose, in the axes of their faces, see `Potential.slip_rates`.
 
     Args:
-        rates: of the slips for unit velocities, one matrix for each way, shape (m, n nv).
-        drag: friction on the bodies of the points [N], shape (m, ways).
-        stiffness: of the chord where a point slips [N/m], shape (m,).
+        rates: of the slips for unit velocities, one matrix for each tangential direction, shape (m, n nv).
+        drag: friction on the bodies of the points [N], shape (m, directions).
+        stiffness: of the springs, and where a point slips its friction over its slip [N/m], shape (m,).
         slips: whether a point slips, shape (m,).
     """
 
@@ -142,7 +143,7 @@ class Grips(NamedTuple):
     slips: Flags
 
     @property
-    def held(self) -> Array:
+    def generalised(self) -> Array:
         """Generalised force of the friction, shape (n nv,)."""
         return np.sum([rates.T @ drag for rates, drag in zip(self.rates, self.drag.T, strict=True)], axis=0)
 
@@ -152,9 +153,9 @@ class Grips(NamedTuple):
         return np.asarray(self.slips & (self.stiffness > 0))
 
     def along(self, slips: Flags) -> csr_array:
-        """Rates of points that slip along the friction that they have, shape (points, n nv)."""
-        ways = (self.drag[slips] / np.linalg.norm(self.drag[slips], axis=1)[:, None]).T
-        rows = (times(way, rates[slips]) for way, rates in zip(ways, self.rates, strict=True))
+        """Rates of slip along the direction of friction, of the points that slip, shape (points, n nv)."""
+        directions = (self.drag[slips] / np.linalg.norm(self.drag[slips], axis=1)[:, None]).T
+        rows = (times(direction, rates[slips]) for direction, rates in zip(directions, self.rates, strict=True))
         return csr_array(sum(rows, start=csr_array((int(slips.sum()), self.rates[0].shape[1]))))
 
 
@@ -167,7 +168,7 @@ class Trial(NamedTuple):
         springs: their stiffness [N/m], shape (m + t,).
         rates: of their openings for unit velocities, shape (m + t, n nv).
         push: force of each [N], shape (m + t,).
-        sliders, grips: the friction.
+        sliders, friction: the friction.
         missing: generalised force that is missing, moments over the size of the body [N], shape (n nv,).
     """
 
@@ -177,11 +178,11 @@ class Trial(NamedTuple):
     rates: csr_array
     push: Array
     sliders: Sliders
-    grips: Grips
+    friction: PointFriction
     missing: Array
 
     @property
-    def left(self) -> float:
+    def missing_sum(self) -> float:
         """Sum of the forces that are missing [N]."""
         return float(np.abs(self.missing).sum())
 
@@ -196,8 +197,8 @@ def settled(potential: Potential, k_s: Array) -> tuple[Array, Array]:
         k_s: stiffness of the contacts along their faces [N/m], infinite where they stick rigidly, shape (m,).
 
     Returns:
-        The pose, shape (n, nq), and the friction on the bodies of the points along the ways of `Potential.slip_rates`
-        [N], shape (m, ways).
+        The pose, shape (n, nq), and the friction on the bodies of the points along the tangential directions of
+        `Potential.slip_rates` [N], shape (m, directions).
 
     Raises:
         UnsettledError: if no such pose is found near the undeformed one, or the bodies fall from it.
@@ -208,8 +209,8 @@ def settled(potential: Potential, k_s: Array) -> tuple[Array, Array]:
         search = Search(np.where(np.isfinite(k_s), k_s, RIGID * k), limited=True, bar=bar)
         for soft in starts:
             with suppress(UnsettledError):
-                return searched_from(potential, search, soft)
-        return searched_from(potential, search, last)
+                return search_from(potential, search, soft)
+        return search_from(potential, search, last)
 
 
 def memory_of(blocks: int, lines: int, *, in_space: bool) -> float:
@@ -225,23 +226,23 @@ def shown_search(potential: Potential) -> Bar:
     return Bar(f"pose of rest, about {needed / 1e9:.2g} GB", "poses")
 
 
-def searched_from(potential: Potential, search: Search, soft: float | None) -> tuple[Array, Array]:
-    """What `settled` returns, by a search from the undeformed pose, or from that on springs of a shear stiffness over
-    the normal one [-]."""
+def search_from(potential: Potential, search: Search, soft: float | None) -> tuple[Array, Array]:
+    """What `settled` returns, by a search from the undeformed pose, or from the pose of rest on springs of another
+    shear stiffness: `soft` times the normal stiffness [-]."""
     k, freedom = potential.structure.places.k, potential.structure.places.freedom
-    start = None if soft is None else searched(potential, search._replace(shear=soft * k))[0]
-    pose, grips = searched(potential, search, start)
-    return pose.reshape(-1, freedom.nq), grips.drag
+    start = None if soft is None else search_pose(potential, search._replace(shear=soft * k))[0]
+    pose, friction = search_pose(potential, search, start)
+    return pose.reshape(-1, freedom.nq), friction.drag
 
 
-def held(potential: Potential) -> Array:
-    """The pose of rest of bodies that friction holds without a limit, shape (n, nq), see `settled`."""
+def settled_without_slip(potential: Potential) -> Array:
+    """The pose of rest if friction had no limit, shape (n, nq), see `settled`."""
     with shown_search(potential) as bar:
-        pose, _ = searched(potential, Search(RIGID_WITHOUT_LIMIT * potential.structure.places.k, False, bar))
+        pose, _ = search_pose(potential, Search(RIGID_WITHOUT_LIMIT * potential.structure.places.k, False, bar))
     return pose.reshape(-1, potential.structure.places.freedom.nq)
 
 
-def searched(potential: Potential, search: Search, start: Array | None = None) -> tuple[Array, Grips]:
+def search_pose(potential: Potential, search: Search, start: Array | None = None) -> tuple[Array, PointFriction]:
     """The pose of rest, shape (n nq,), and the friction there.
 
     The search starts from a pose, or with None from the undeformed one, at which all contacts touch. Bodies that
@@ -250,43 +251,43 @@ def searched(potential: Potential, search: Search, start: Array | None = None) -
     Raises:
         UnsettledError: if there is none within the number of poses.
     """
-    freedom, (loose, share, least, last) = potential.structure.places.freedom, BEGINNING
-    reached, at = np.inf, 0  # the least force that has been missing, and since which pose
-    trial, pushed = tried(potential, search, potential.unmoved if start is None else start, start is None), False
+    freedom, (loose, share, least, previous) = potential.structure.places.freedom, BEGINNING
+    least_missing, since = np.inf, 0  # the least force that has been missing, and at which pose it was
+    trial, pushed = trial_at(potential, search, potential.unmoved if start is None else start, start is None), False
     for poses in range(POSES):
-        ending = trial if start is None and not poses else ended(potential, search, trial)
+        ending = trial if start is None and not poses else after_exact_steps(potential, search, trial)
         if balances(potential, search, ending):
-            way = falling_way(potential, search, ending)
-            if way is None:
-                return ending.pose, ending.grips
+            direction = falling_direction(potential, search, ending)
+            if direction is None:
+                return ending.pose, ending.friction
             if not pushed or balances(potential, search, trial):
-                trial, pushed = tried(potential, search, let_go(potential, ending, way)), True
-                loose, share, least, last = BEGINNING
-                reached, at = np.inf, poses
-        if trial.left < (1 - PROGRESS) * reached:
-            reached, at = trial.left, poses
-        if poses - at >= SLIDES:
+                trial, pushed = trial_at(potential, search, fallen_pose(potential, ending, direction)), True
+                loose, share, least, previous = BEGINNING
+                least_missing, since = np.inf, poses
+        if trial.missing_sum < (1 - PROGRESS) * least_missing:
+            least_missing, since = trial.missing_sum, poses
+        if poses - since >= SLIDES:
             loose, share, least = LOOSE, 0.0, 0.0
-        elif trial.left < last:
+        elif trial.missing_sum < previous:
             loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
         else:
             loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
-        last = trial.left
+        previous = trial.missing_sum
         springs = np.where(trial.closed, trial.springs, LEANING * trial.springs)
-        stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.grips, share)
-        motion = solved(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
-        trial = tried(potential, search, lowering(potential, trial.pose, motion, trial.sliders))
-        if loose > MOST_LOOSE or poses - at >= STALLED or gone(potential, trial.pose):
+        stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.friction, share)
+        motion = newton_motion(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
+        trial = trial_at(potential, search, lowering_step(potential, trial.pose, motion, trial.sliders))
+        if loose > MOST_LOOSE or poses - since >= STALLED or has_fallen(potential, trial.pose):
             break
     raise UnsettledError(trial.pose.reshape(-1, freedom.nq))
 
 
-def gone(potential: Potential, pose: Array) -> bool:
+def has_fallen(potential: Potential, pose: Array) -> bool:
     """Whether a body has turned too far to stand, or has moved away."""
     freedom = potential.structure.places.freedom
     moved_by = np.abs(pose.reshape(-1, freedom.nq)[:, : freedom.translations]).max(axis=1)
     radii = sizes(potential).reshape(-1, freedom.nv)[:, -1]
-    return not (turned(pose, freedom).max() < ROTATION_OF_FALLEN and np.all(moved_by < WAY_OF_FALLEN * radii))
+    return not (turned(pose, freedom).max() < ROTATION_OF_FALLEN and np.all(moved_by < DISPLACEMENT_OF_FALLEN * radii))
 
 
 def imperfection(potential: Potential, trial: Trial) -> Array:
@@ -296,9 +297,9 @@ def imperfection(potential: Potential, trial: Trial) -> Array:
     falls, whatever the rounding is.
     """
     places, freedom = potential.structure.places, potential.structure.places.freedom
-    count, grips = len(trial.missing) // freedom.nv, trial.sliders.limit > 0
-    pairs = places.body[grips], places.face_body[grips] % (count + 1)  # the ground is the last
-    connected = csr_array((np.ones(int(grips.sum())), pairs), shape=(count + 1, count + 1))
+    count, rough = len(trial.missing) // freedom.nv, trial.sliders.limit > 0
+    pairs = places.body[rough], places.face_body[rough] % (count + 1)  # the ground is the last
+    connected = csr_array((np.ones(int(rough.sum())), pairs), shape=(count + 1, count + 1))
     group = scipy.sparse.csgraph.connected_components(connected, directed=False)[1]
     forces = np.zeros((count, freedom.nv))
     forces[group[:-1] == group[-1], : freedom.translations - 1] = [1.0, 0.5][: freedom.translations - 1]
@@ -310,59 +311,67 @@ def balances(potential: Potential, search: Search, trial: Trial) -> bool:
     return bool(np.abs(trial.missing).max() < tolerance(potential, trial.pose, search))
 
 
-def ended(potential: Potential, search: Search, trial: Trial) -> Trial:
-    """The pose to which exact steps lead, or parts of them, that each leave less force missing."""
+def after_exact_steps(potential: Potential, search: Search, trial: Trial) -> Trial:
+    """The pose after as many exact steps, whole or in part, as each leave less force missing."""
     for _ in range(EXACT_STEPS):
-        better = exact(potential, search, trial)
+        better = exact_step(potential, search, trial)
         if better is None:
             break
         trial = better
     return trial
 
 
-def exact(potential: Potential, search: Search, trial: Trial) -> Trial | None:
-    """The pose after a step along which the derivatives of all forces lead, or after a part of it, or None if no part
-    lets less force be missing. Where the error of the whole step is too large for the smallest part, none is tried."""
-    motion = solved(potential, stiffness_at(potential, search, trial), trial.missing, LEAST_LOOSE)
+def exact_step(potential: Potential, search: Search, trial: Trial) -> Trial | None:
+    """The pose after a step by the derivatives of all forces, or after a part of it; None if more force is missing
+    after every part. Where far more is missing after a step, no smaller parts are tried."""
+    motion = newton_motion(potential, stiffness_at(potential, search, trial), trial.missing, LEAST_LOOSE)
     for part in PARTS_OF_STEP[:1] if balances(potential, search, trial) else PARTS_OF_STEP:
-        step = tried(potential, search, moved(trial.pose, part * motion, potential.structure.places.freedom))
-        if step.left < (1 - LITTLE_PROGRESS * part) * trial.left:
+        step = trial_at(potential, search, moved(trial.pose, part * motion, potential.structure.places.freedom))
+        if step.missing_sum < (1 - LITTLE_PROGRESS * part) * trial.missing_sum:
             return step
-        if step.left > LITTLE_PROGRESS * part / PARTS_OF_STEP[-1] * trial.left:
+        if step.missing_sum > LITTLE_PROGRESS * part / PARTS_OF_STEP[-1] * trial.missing_sum:
             break
     return None
 
 
-def tried(potential: Potential, search: Search, pose: Array, touches: bool = False) -> Trial:
+def trial_at(potential: Potential, search: Search, pose: Array, touches: bool = False) -> Trial:
     """The forces at a pose of shape (n nq,); where the search starts, all contacts touch."""
     search.bar.add()
     openings, rates = potential.openings(pose), potential.rates(pose)
     closed = touching(potential, pose) if touches else potential.closed(openings)
     push = potential.forces_at(openings)
     sliders = sliders_at(potential.structure.places, search, np.where(closed, push, -1.0)[: len(search.shear)])
-    grips = grips_at(potential, pose, sliders)
-    missing = (potential.load(pose) + rates.T @ push + grips.held) / sizes(potential)
-    return Trial(pose, closed, potential.springs_at(openings), rates, push, sliders, grips, missing)
+    friction = friction_at(potential, pose, sliders)
+    missing = (potential.load(pose) + rates.T @ push + friction.generalised) / sizes(potential)
+    return Trial(pose, closed, potential.springs_at(openings), rates, push, sliders, friction, missing)
 
 
 def stiffness_at(potential: Potential, search: Search, trial: Trial) -> csr_array:
-    """What is missing more per motion, shape (n nv, n nv): the limit of friction grows with the pressure too."""
-    places, slipping, m = potential.structure.places, trial.grips.slipping, len(search.shear)
+    """Derivative of the missing force along a motion, shape (n nv, n nv): the limit of friction grows with the
+    pressure too."""
+    places, slipping, m = potential.structure.places, trial.friction.slipping, len(search.shear)
     # open contacts have next to none: more of it would hide that open joints let go of a structure that stands on few
     springs = np.where(trial.closed, trial.springs, LEAST_LOOSE * trial.springs)
-    stiffness = sprung(trial.rates, springs) + curvature(potential, trial) + shear_stiffness(trial.grips, 0.0)
+    stiffness = sprung(trial.rates, springs) + curvature(potential, trial) + shear_stiffness(trial.friction, 0.0)
     pressed = (trial.push[:m] > 0)[slipping]
     rises = np.where(pressed, shear_limit(places.law, trial.springs[:m])[slipping], 0.0)  # with depth [N/m]
-    return csr_array(stiffness + trial.grips.along(slipping).T @ times(rises, csr_array(trial.rates[:m][slipping])))
+    return csr_array(stiffness + trial.friction.along(slipping).T @ times(rises, csr_array(trial.rates[:m][slipping])))
 
 
 def curvature(potential: Potential, trial: Trial) -> csr_array:
     """Geometric stiffness of all forces at a pose, shape (n nv, n nv)."""
-    return potential.curvature(trial.pose, trial.sliders.shares.T @ trial.grips.drag)
+    return potential.curvature(trial.pose, trial.sliders.shares.T @ trial.friction.drag)
 
 
-def solved(potential: Potential, stiffness: csr_array, missing: Array, loose: float) -> Array:
-    """The motion that makes up for forces that are missing, with a stiffness that is lent to all, over the largest."""
+def newton_motion(potential: Potential, stiffness: csr_array, missing: Array, loose: float) -> Array:
+    """The motion that makes up for forces that are missing, shape (n nv,).
+
+    Args:
+        potential: of the bodies.
+        stiffness: shape (n nv, n nv).
+        missing: shape (n nv,).
+        loose: stiffness that is added to the whole diagonal, over the largest there [-].
+    """
     size = sizes(potential)
     scaled = times(1 / size, csr_array(stiffness))
     scaled.data *= (1 / size)[scaled.indices]
@@ -371,8 +380,8 @@ def solved(potential: Potential, stiffness: csr_array, missing: Array, loose: fl
 
 
 def sizes(potential: Potential) -> Array:
-    """What the velocities of bodies are multiplied by to compare moments with forces: 1, and the radius of inertia [m],
-    shape (n nv,)."""
+    """Lengths by which moments are divided to compare them with forces: 1 for a force, and the radius of inertia [m]
+    for a moment, shape (n nv,)."""
     masses, nv = potential.structure.masses, potential.structure.places.freedom.nv
     return np.asarray(np.sqrt(masses / np.repeat(masses[::nv], nv)))
 
@@ -391,7 +400,7 @@ def sliders_at(contacts: Places, search: Search, push: Array) -> Sliders:
     return Sliders(search.shear, limit, shares)
 
 
-def lowering(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
+def lowering_step(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
     """The pose after a motion, or after a part of it that does not raise the energy, see `energy_with`."""
     freedom, part, energy = potential.structure.places.freedom, 1.0, energy_with(sliders, potential, pose)
     highest = energy + max(ENERGY_ROUNDING * heaviest(potential), RAISES * abs(energy))
@@ -401,80 +410,85 @@ def lowering(potential: Potential, pose: Array, motion: Array, sliders: Sliders)
 
 
 def energy_with(sliders: Sliders, potential: Potential, pose: Array) -> float:
-    """Energy at a pose, with that of the sliders and the work that slipping further takes at a constant limit [J].
+    """Energy at a pose, with that of the springs along the faces and the work of slip at the present limits [J].
 
-    The forces that are missing at a pose are those along which it falls.
+    Its negative gradient is the force that is missing.
     """
     stretch = np.linalg.norm(sliders.shares @ potential.slips(pose), axis=1)
     elastic = np.minimum(stretch, np.maximum(sliders.limit, 0.0) / sliders.stiffness)
     return potential.energy(pose) + float((sliders.stiffness * elastic * (stretch - 0.5 * elastic)).sum())
 
 
-def grips_at(potential: Potential, pose: Array, sliders: Sliders) -> Grips:
+def friction_at(potential: Potential, pose: Array, sliders: Sliders) -> PointFriction:
     """Friction at a pose of shape (n nq,)."""
     stretch = sliders.shares @ potential.slips(pose)
-    held = sliders.stiffness * np.linalg.norm(stretch, axis=1)
-    slips = held > sliders.limit
-    stays = np.where(slips, np.maximum(sliders.limit, 0.0) / np.where(held > 0, held, 1.0), 1.0)
+    elastic = sliders.stiffness * np.linalg.norm(stretch, axis=1)
+    slips = elastic > sliders.limit
+    stays = np.where(slips, np.maximum(sliders.limit, 0.0) / np.where(elastic > 0, elastic, 1.0), 1.0)
     stiffness = stays * sliders.stiffness
     rates = tuple(csr_array(sliders.shares @ rates) for rates in potential.slip_rates(pose))
-    return Grips(rates, -stiffness[:, None] * stretch, stiffness, slips)
+    return PointFriction(rates, -stiffness[:, None] * stretch, stiffness, slips)
 
 
-def shear_stiffness(grips: Grips, share: float) -> csr_array:
+def shear_stiffness(friction: PointFriction, share: float) -> csr_array:
     """Stiffness of the points along their faces, shape (n nv, n nv). Along its slip a point has a share of it."""
-    rates, springs = list(grips.rates), [grips.stiffness for _ in grips.rates]
-    if (slipping := grips.slipping).any():
-        rates.append(grips.along(slipping))
-        springs.append((share - 1) * grips.stiffness[slipping])
+    rates, springs = list(friction.rates), [friction.stiffness for _ in friction.rates]
+    if (slipping := friction.slipping).any():
+        rates.append(friction.along(slipping))
+        springs.append((share - 1) * friction.stiffness[slipping])
     return sprung(csr_array(vstack(rates)), np.concatenate(springs))
 
 
-def falling_way(potential: Potential, search: Search, trial: Trial) -> Array | None:
-    """The motion that lowers the energy most from a pose at rest while its friction holds, or None where it stands.
+def falling_direction(potential: Potential, search: Search, trial: Trial) -> Array | None:
+    """The motion from a pose of balance along which the energy falls most steeply with friction as it is; None where it
+    rises along all, so that the bodies stand.
 
-    A contact that touches without force has no stiffness: a motion the other way opens it.
+    A contact that touches without force has no stiffness: the opposite motion opens it.
     """
     presses = (trial.push > tolerance(potential, trial.pose, search)) | potential.bonded
     bent = curvature(potential, trial)
     stiffness = sprung(trial.rates, np.where(presses, trial.springs, 0.0))
     most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
-    lowest, way = lowest_mode(csr_array(stiffness + shear_stiffness(trial.grips, 1.0) + bent), most)
-    return way if lowest < -NEGLIGIBLE_STIFFNESS * float(abs(stiffness).max()) else None
+    lowest, direction = lowest_mode(csr_array(stiffness + shear_stiffness(trial.friction, 1.0) + bent), most)
+    return direction if lowest < -NEGLIGIBLE_STIFFNESS * float(abs(stiffness).max()) else None
 
 
-def let_go(potential: Potential, trial: Trial, way: Array) -> Array:
-    """The pose to which bodies fall from a pose at which they balance, forwards or backwards along a way, while the
-    friction there holds: to where the energy is lower, and forwards where both are alike, as in a structure that is
-    its own mirror image."""
-    freedom, way = potential.structure.places.freedom, forwards(potential, way)
-    near = PUSH * float(potential.pressed(trial.pose).max()) / np.abs(way).max()
-    of_friction = shear_stiffness(trial.grips, 1.0) + curvature(potential, trial) - potential.curvature(trial.pose)
-    held, stiffness = way @ trial.grips.held, way @ (of_friction @ way)
+def fallen_pose(potential: Potential, trial: Trial, direction: Array) -> Array:
+    """The pose of least energy to which bodies fall along a direction from a pose at which they balance, with the
+    friction there. Of the two senses of the direction the one with the lower energy is taken, and forwards where both
+    are alike, as in a structure that is its own mirror image."""
+    freedom, direction = potential.structure.places.freedom, forwards(potential, direction)
+    first = PUSH * float(potential.pressed(trial.pose).max()) / np.abs(direction).max()
+    of_friction = shear_stiffness(trial.friction, 1.0) + curvature(potential, trial) - potential.curvature(trial.pose)
+    friction, stiffness = direction @ trial.friction.generalised, direction @ (of_friction @ direction)
 
-    def energy(far: float) -> float:
-        return potential.energy(moved(trial.pose, far * way, freedom)) - far * held + 0.5 * far * far * stiffness
+    def energy(distance: float) -> float:
+        return (
+            potential.energy(moved(trial.pose, distance * direction, freedom))
+            - distance * friction
+            + 0.5 * distance * distance * stiffness
+        )
 
-    def fallen(far: float) -> float:
-        while energy(2 * far) < energy(far) and abs(far) * np.abs(way).max() < ROTATION_OF_FALLEN:
-            far *= 2
-        lowest = scipy.optimize.minimize_scalar(lambda part: energy(part * far), bounds=(1, 2), method="bounded")
-        return far * float(lowest.x)
+    def lowest_along(distance: float) -> float:
+        while energy(2 * distance) < energy(distance) and abs(distance) * np.abs(direction).max() < ROTATION_OF_FALLEN:
+            distance *= 2
+        lowest = scipy.optimize.minimize_scalar(lambda part: energy(part * distance), bounds=(1, 2), method="bounded")
+        return distance * float(lowest.x)
 
-    ahead, behind = fallen(near), fallen(-near)
+    ahead, behind = lowest_along(first), lowest_along(-first)
     lower = energy(ahead) - energy(behind)
     alike = max(ENERGY_ROUNDING * heaviest(potential), AS_LOW * (energy(0.0) - energy(ahead)))
-    return moved(trial.pose, (ahead if lower < alike else behind) * way, freedom)
+    return moved(trial.pose, (ahead if lower < alike else behind) * direction, freedom)
 
 
-def forwards(potential: Potential, way: Array) -> Array:
-    """A way, or its opposite, in the sense in which the momentum of all bodies along x, y or z is positive, along that
-    axis along which it is largest. It is the same in any order of the bodies."""
+def forwards(potential: Potential, direction: Array) -> Array:
+    """A direction or its opposite: that in which the total momentum is positive along the axis x, y or z along which it
+    is largest. It does not depend on the order of the bodies."""
     masses, freedom = potential.structure.masses, potential.structure.places.freedom
-    momenta = (masses * way).reshape(-1, freedom.nv)[:, : freedom.translations]
+    momenta = (masses * direction).reshape(-1, freedom.nv)[:, : freedom.translations]
     total = momenta.sum(axis=0)
     largest = total[np.argmax(np.abs(total))]
-    return -way if largest < -AS_LOW * np.abs(momenta).sum() else way
+    return -direction if largest < -AS_LOW * np.abs(momenta).sum() else direction
 
 
 def touching(potential: Potential, pose: Array) -> Flags:

@@ -132,7 +132,7 @@ class Scene:
         if not (ties.squeeze > 0).any():
             return ties
         frames = frames_of(self.at_rest.ravel(), self.freedom)
-        lengths = [math.hypot(*ends(ties.links, i, frames).across) for i in range(len(ties.k))]
+        lengths = [math.hypot(*ends(ties.links, i, frames).span) for i in range(len(ties.k))]
         return ties._replace(reach=frozen(np.where(ties.squeeze > 0, lengths, ties.reach)))
 
     def _ties(self, links: Links) -> Ties:
@@ -162,14 +162,14 @@ class Scene:
 
     @cached_property
     def potential(self) -> Potential:
-        """The energy of all that may bear something at rest, as a function of the pose."""
-        axes, given = self.freedom.axes, self.forces
-        vectors = (each.reshape(-1, len(axes)) for each in (given.at, given.force))
+        """The energy of all that may have a force at rest, as a function of the pose."""
+        axes, forces = self.freedom.axes, self.forces
+        vectors = (each.reshape(-1, len(axes)) for each in (forces.at, forces.force))
         bearing = self.links.bearing
         structure = Structure(
             self.places,
             self._ties(bearing),
-            AppliedForces(axes, given.body, *vectors),
+            AppliedForces(axes, forces.body, *vectors),
             self.bodies.masses,
             self.bodies.products,
         )
@@ -200,7 +200,7 @@ class Scene:
         return self.accounts(self.at_rest.reshape(1, -1).copy(), np.zeros((1, len(self.bodies.masses))))[0][0]
 
     def accounts(self, q: Array, v: Array, broken: Integers | None = None) -> tuple[Array, Array]:
-        """Kinetic, potential and elastic energy, and what ties have taken, see `potential.energies`."""
+        """Kinetic, potential and elastic energy, and what ties have dissipated, see `potential.energies`."""
         return energies(self.structure, q, v, broken)
 
     def energy(self, pose: Array, velocity: Array) -> Array:
@@ -246,8 +246,10 @@ class Scene:
 
 
 def liveliness(scene: Scene, velocity: Array) -> float:
-    """The kinetic energy of a block of masonry over its share, by mass, of that of the springs at rest, with which it
-    opens a joint, the largest of all blocks [-], from the velocities, shape (bodies, nv)."""
+    """Largest kinetic energy of a block over its share, by mass, of the elastic energy at rest [-].
+
+    A block with more than its share can open a joint. Velocities have the shape (bodies, nv).
+    """
     springs, bodies = float(scene.rest_energies[2]), scene.bodies
     moving = kinetic_energies(bodies.masses, bodies.products, velocity) / bodies.mass
     return float(moving.max() * bodies.mass.sum() / springs) if springs > 0 else float("inf")

@@ -21,7 +21,7 @@ TINTS = (
 FIXED_COLOUR = (0.75, 0.75, 0.75)
 """The same of what is fixed."""
 GOLDEN = 0.5 * (5**0.5 - 1)
-"""Steps of this length around a circle leave no two of few places close to each other [-]."""
+"""Step around a circle of tints from block to block, over the circle: it gives tints that are far apart [-]."""
 
 
 def distinct_tints(count: int, touching: Iterable[tuple[int, int]]) -> list[int]:
@@ -39,9 +39,9 @@ def distinct_tints(count: int, touching: Iterable[tuple[int, int]]) -> list[int]
         near[other].add(one)
     chosen: list[int] = []
     for j, neighbours in enumerate(near):
-        taken, first = {chosen[i] for i in neighbours if i < j}, int(len(TINTS) * (j * GOLDEN % 1))
+        used, first = {chosen[i] for i in neighbours if i < j}, int(len(TINTS) * (j * GOLDEN % 1))
         order = [(first + k) % len(TINTS) for k in range(len(TINTS))]
-        chosen.append(next((tint for tint in order if tint not in taken), first))
+        chosen.append(next((tint for tint in order if tint not in used), first))
     return chosen
 
 

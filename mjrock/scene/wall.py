@@ -16,7 +16,7 @@ from ..problem.wall.rest_geometry import WallRestGeometry
 from ..quantities import Array, require_kind
 from .course import Course
 from .parts import GROUND, Bodies, ContactPoints, attachments
-from .rest import held
+from .rest import settled_without_slip
 from .scene import Scene
 
 
@@ -35,8 +35,8 @@ def inner_friction(wall: Block, contacts: Contacts, method: Method = METHOD) -> 
 def base_friction(wall: Block, contacts: Contacts, side_stop: bool, method: Method) -> Array:
     """Friction coefficients of the lines of the base [-], shape (points,).
 
-    A coefficient that is given acts at every line. A base that holds does so at the two edges alone: a bed of which
-    every line sticks for good would lock the rotation that shears it.
+    A given coefficient acts at every line. A base that cannot slide has friction at its two edges alone: if all lines
+    stuck, they would lock the rotation that shears the base.
     """
     points = contacts.base.points
     if contacts.base.friction is not None:
@@ -140,7 +140,7 @@ def standing_wall(
     if even:
         return scene
     on_base = replace(scene.contacts, friction=np.where(scene.contacts.joint == 0, friction, 0.0))
-    return replace(scene, settled=held(replace(scene, contacts=on_base).potential))
+    return replace(scene, settled=settled_without_slip(replace(scene, contacts=on_base).potential))
 
 
 def require_carried(case: Case, contacts: Contacts) -> None:

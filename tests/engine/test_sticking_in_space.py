@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from space_scenes import box, course, fitted, fixed
 
 import mjrock as mr
-from mjrock.engine.sticking import Joints, StepPoses, deepest, rolled, ways_along
+from mjrock.engine.sticking import Joints, StepPoses, deepest, rolled, tangents_at
 from mjrock.geometry.frames import SPACE, frames_of
 from mjrock.geometry.kinematics import depth, meeting
 from mjrock.geometry.poses import moved
@@ -99,7 +99,7 @@ def test_a_point_rolls_as_its_body_turns_over_its_face():
         pressed = 0.5 * (depth(scene.places, i, step.from_frames) + depth(scene.places, i, step.frames))
         relative = turns[0] if scene.contacts.body[i] == 0 else turns[1] - turns[0]
         expected = -0.5 * pressed * np.cross(relative, meets.normal)
-        ways = ways_along(scene.places, i, step.frames)
+        ways = tangents_at(scene.places, i, step.frames)
         np.testing.assert_allclose([*ways, meets.normal] @ np.transpose([*ways, meets.normal]), np.eye(3), atol=1e-14)
         found = [rolled(scene.places, i, meets, way, step) for way in ways]
         np.testing.assert_allclose(found, np.array(ways) @ expected, rtol=1e-6)

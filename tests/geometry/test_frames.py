@@ -31,8 +31,8 @@ from mjrock.geometry.kinematics import (
     gap,
     gaps,
     meeting,
-    over_face,
     push_apart,
+    relative_velocity,
     slack,
     stretch,
     where_friction_acts,
@@ -288,10 +288,10 @@ class TestThePlaneInSpace:
                 mine = gap(places, i, other, velocity_in_space(v), velocity_in_space(a))
                 np.testing.assert_allclose(mine, gap(flat, i, one, v, a), rtol=0, atol=1e-13)
                 assert depth(places, i, other) == -mine.value
-                moved = over_face(places, i, meeting(places, i, other), other, velocity_in_space(v))
+                moved = relative_velocity(places, i, meeting(places, i, other), other, velocity_in_space(v))
                 assert moved[1] == 0
                 np.testing.assert_allclose(
-                    moved[::2], over_face(flat, i, meeting(flat, i, one), one, v), rtol=0, atol=1e-13
+                    moved[::2], relative_velocity(flat, i, meeting(flat, i, one), one, v), rtol=0, atol=1e-13
                 )
 
     def test_gaps_at_many_poses(self, scene):
@@ -367,7 +367,7 @@ class TestTumblingBodies:
                 across = material(rest, q, places.body[i], places.at[i]) - origin
                 meets = meeting(places, i, frames)
                 np.testing.assert_allclose(meets.normal, normal, atol=1e-14)
-                np.testing.assert_allclose(meets.across, across, atol=1e-14)
+                np.testing.assert_allclose(meets.offset, across, atol=1e-14)
                 assert meets.gap == pytest.approx(normal @ across, abs=2e-14)
                 assert gaps(places, q[None])[0, i] == pytest.approx(meets.gap, abs=2e-14)
 
@@ -412,7 +412,7 @@ class TestTumblingBodies:
                 for at in (meets, where_friction_acts(places, meets)):
                     force, total = tuple(rng.normal(0, 1, 3)), np.zeros(12)
                     push_apart(places, i, at, frames, force, total)
-                    power = dot(force, over_face(places, i, at, frames, v))
+                    power = dot(force, relative_velocity(places, i, at, frames, v))
                     assert total @ v == pytest.approx(power, rel=1e-12, abs=1e-13)
                 pressing = np.zeros(12)
                 push_apart(places, i, meets, frames, scaled(2.0, meets.normal), pressing)

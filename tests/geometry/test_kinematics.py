@@ -9,7 +9,7 @@ from scenes import changed, two_blocks
 
 import mjrock as mr
 from mjrock.geometry.frames import frames_of, rotation_change
-from mjrock.geometry.kinematics import depth, gap, gaps, meeting, over_face, slack, stretch, where_friction_acts
+from mjrock.geometry.kinematics import depth, gap, gaps, meeting, relative_velocity, slack, stretch, where_friction_acts
 from mjrock.geometry.vectors import dot, tangent
 from mjrock.problem.wall.effect import LinkLaw
 from mjrock.problem.wall.restoring_moment import pose_of, pulled
@@ -137,7 +137,7 @@ def test_a_tie_yields_beyond_its_strength_and_stays_longer():
 def slip_of_bodies(places, i, frames, v):
     """Slip where friction acts, in the plane [m/s]."""
     acts = where_friction_acts(places, meeting(places, i, frames))
-    return dot(tangent(acts.normal), over_face(places, i, acts, frames, v))
+    return dot(tangent(acts.normal), relative_velocity(places, i, acts, frames, v))
 
 
 def test_a_place_along_a_face_moves_with_its_rate():
@@ -146,14 +146,14 @@ def test_a_place_along_a_face_moves_with_its_rate():
 
     def place(i, frames):
         meets = meeting(scene.places, i, frames)
-        return dot(tangent(meets.normal), meets.across)
+        return dot(tangent(meets.normal), meets.offset)
 
     for q, v, _ in zip(*poses(np.random.default_rng(10), 20, 2), strict=True):
         for i in range(len(scene.contacts.k)):
             before, after = (place(i, frames_of(q + s * v)) for s in (-t, t))
             frames = frames_of(q)
             meets = meeting(scene.places, i, frames)
-            rate = dot(tangent(meets.normal), over_face(scene.places, i, meets, frames, v))
+            rate = dot(tangent(meets.normal), relative_velocity(scene.places, i, meets, frames, v))
             assert (after - before) / (2 * t) == pytest.approx(rate, abs=1e-7)
             assert depth(scene.places, i, frames) == pytest.approx(-gap(scene.places, i, frames, v, v).value)
     for i, expected in enumerate((-0.3, 0.3, -0.3, 0.3)):

@@ -7,7 +7,7 @@ from scenes import two_blocks
 import mjrock as mr
 from mjrock.engine.sliding import slipping
 from mjrock.geometry.frames import frames_of
-from mjrock.geometry.kinematics import depth, gap, meeting, over_face, push_apart, where_friction_acts
+from mjrock.geometry.kinematics import depth, gap, meeting, push_apart, relative_velocity, where_friction_acts
 from mjrock.geometry.vectors import dot, scaled, tangent
 
 
@@ -31,9 +31,9 @@ def test_rates_are_those_of_the_kinematics(scene):
             between = gap(places, i, frames, velocity, velocity)
             assert meets.gap == pytest.approx(between.value, abs=1e-14)
             assert meets.gap == pytest.approx(-depth(places, i, frames), abs=1e-14)
-            opening = dot(meets.normal, over_face(places, i, meets, frames, velocity))
+            opening = dot(meets.normal, relative_velocity(places, i, meets, frames, velocity))
             assert opening == pytest.approx(between.rate, abs=1e-13)
-            slip = dot(tangent(meets.normal), over_face(places, i, meets, frames, velocity))
+            slip = dot(tangent(meets.normal), relative_velocity(places, i, meets, frames, velocity))
             assert slipping(places, i, meets, frames, velocity).speed == pytest.approx(slip, abs=1e-13)
 
 

@@ -53,23 +53,23 @@ def test_a_slider_sticks_or_has_what_the_face_holds_against_its_slip(slid, slips
     scene = two_blocks()
     found = sliders(scene, [1e6, 2e6, 1.0, 1.0])
     pose = np.array([slid, 0.0, 0.0, slid, 0.0, 0.0])
-    grips = rest.grips_at(scene.potential, pose, found)
+    friction = rest.friction_at(scene.potential, pose, found)
     k = 1e3 * scene.contacts.k
     sense = np.sign(scene.potential.slips(pose)[0, 0] * slid)
     assert abs(sense) == 1
     stretch = sense * np.array([slid, slid, 0.0, 0.0])
-    held = np.clip(k * stretch, -found.limit, found.limit)
-    np.testing.assert_allclose(grips.drag[:, 0], -held, rtol=1e-9, atol=1e-9)
-    assert (grips.slips[:2] == slips).all()
-    assert not grips.slips[2:].any()
-    chord = np.divide(held, stretch, out=k.copy(), where=stretch != 0)
-    np.testing.assert_allclose(grips.stiffness, chord, rtol=1e-9)
-    np.testing.assert_allclose(grips.held[0], -sense * held.sum(), rtol=1e-9)
-    whole, half = rest.shear_stiffness(grips, 1.0).toarray(), rest.shear_stiffness(grips, 0.25).toarray()
+    force = np.clip(k * stretch, -found.limit, found.limit)
+    np.testing.assert_allclose(friction.drag[:, 0], -force, rtol=1e-9, atol=1e-9)
+    assert (friction.slips[:2] == slips).all()
+    assert not friction.slips[2:].any()
+    chord = np.divide(force, stretch, out=k.copy(), where=stretch != 0)
+    np.testing.assert_allclose(friction.stiffness, chord, rtol=1e-9)
+    np.testing.assert_allclose(friction.generalised[0], -sense * force.sum(), rtol=1e-9)
+    whole, half = rest.shear_stiffness(friction, 1.0).toarray(), rest.shear_stiffness(friction, 0.25).toarray()
     assert whole[0, 0] == pytest.approx(chord.sum())
     assert whole[3, 3] == pytest.approx(chord[2:].sum())
     assert half[0, 0] == pytest.approx((0.25 if slips else 1.0) * chord[:2].sum() + chord[2:].sum())
-    elastic = np.abs(held) / k
+    elastic = np.abs(force) / k
     stored = (k * elastic * (np.abs(stretch) - 0.5 * elastic)).sum()
     energy = rest.energy_with(found, scene.potential, pose) - scene.potential.energy(pose)
     assert energy == pytest.approx(stored, rel=1e-9, abs=1e-15 * WEIGHT)
@@ -82,12 +82,12 @@ def test_an_exact_step_follows_the_derivatives_of_all_forces():
     search, freedom = search_in(scene), scene.freedom
     lower, upper = 4e-5, -3e-4
     pose = scene.at_rest.ravel() + np.array([2e-3, 0.0, lower, 2e-3 + 1.05 * (lower + upper), 0.0, upper])
-    trial = rest.tried(scene.potential, search, pose)
-    assert 0 < trial.grips.slipping.sum() < trial.closed.sum() < 4
+    trial = rest.trial_at(scene.potential, search, pose)
+    assert 0 < trial.friction.slipping.sum() < trial.closed.sum() < 4
     size = rest.sizes(scene.potential)
     derivatives = np.empty((6, 6))
     for i, way in enumerate(1e-8 * np.eye(6)):
-        ahead, behind = (rest.tried(scene.potential, search, moved(pose, s * way, freedom)).missing for s in (1, -1))
+        ahead, behind = (rest.trial_at(scene.potential, search, moved(pose, s * way, freedom)).missing for s in (1, -1))
         derivatives[:, i] = (behind - ahead) / 2e-8 * size
     found = rest.stiffness_at(scene.potential, search, trial).toarray()
     # friction acts halfway between point and face, where slip is that of the point: 1e-4 of the arm of a block
@@ -97,22 +97,24 @@ def test_an_exact_step_follows_the_derivatives_of_all_forces():
 def test_open_sliders_hold_nothing():
     scene = two_blocks()
     found = sliders(scene, [-1.0] * 4)
-    grips = rest.grips_at(scene.potential, np.array([1e-3, 0.0, 0.0, 2e-3, 0.0, 0.0]), found)
-    assert not grips.drag.any()
-    assert not grips.stiffness.any()
-    assert not rest.shear_stiffness(grips, 0.5).toarray().any()
+    friction = rest.friction_at(scene.potential, np.array([1e-3, 0.0, 0.0, 2e-3, 0.0, 0.0]), found)
+    assert not friction.drag.any()
+    assert not friction.stiffness.any()
+    assert not rest.shear_stiffness(friction, 0.5).toarray().any()
 
 
 def test_friction_in_space_is_softer_along_its_slip_alone():
     """k (1 - a a) + share k a a with a the way of the slip, along two ways of the face."""
     rates = [np.array([[1.0, 0.0, 0.3]]), np.array([[0.0, 1.0, -0.2]])]
     one = rest.csr_array
-    grips = rest.Grips(tuple(one(rate) for rate in rates), np.array([[-3.0, 4.0]]), np.array([7.0]), np.array([True]))
+    friction = rest.PointFriction(
+        tuple(one(rate) for rate in rates), np.array([[-3.0, 4.0]]), np.array([7.0]), np.array([True])
+    )
     way = np.array([-0.6, 0.8])
     matrix = 7.0 * (np.eye(2) - 0.75 * np.outer(way, way))
     both = np.vstack(rates)
-    np.testing.assert_allclose(rest.shear_stiffness(grips, 0.25).toarray(), both.T @ matrix @ both, rtol=1e-12)
-    np.testing.assert_allclose(grips.held, both.T @ [-3.0, 4.0])
+    np.testing.assert_allclose(rest.shear_stiffness(friction, 0.25).toarray(), both.T @ matrix @ both, rtol=1e-12)
+    np.testing.assert_allclose(friction.generalised, both.T @ [-3.0, 4.0])
 
 
 def test_what_may_be_missing_is_a_billionth_of_the_heaviest_body_or_what_springs_round_to():
@@ -160,7 +162,7 @@ def test_a_stack_settles_by_its_weight_over_its_springs():
     np.testing.assert_allclose(scene.at_rest[:, 1], [-2 * WEIGHT / k, -3 * WEIGHT / k], rtol=1e-9)
     pose = scene.at_rest.ravel()
     search = search_in(scene)
-    assert rest.falling_way(scene.potential, search, rest.tried(scene.potential, search, pose)) is None
+    assert rest.falling_direction(scene.potential, search, rest.trial_at(scene.potential, search, pose)) is None
 
 
 def test_the_whole_motion_is_made_where_it_takes_energy_and_a_part_where_it_gives_some():
@@ -168,8 +170,8 @@ def test_the_whole_motion_is_made_where_it_takes_energy_and_a_part_where_it_give
     rests, found = scene.at_rest.ravel(), sliders(scene, [-1.0] * 4)
     down = np.array([0.0, 1.0, 0.0, 0.0, 1.0, 0.0])
     above = rests + 1e-4 * down
-    np.testing.assert_allclose(rest.lowering(scene.potential, above, -1e-4 * down, found), rests, atol=1e-15)
-    far = rest.lowering(scene.potential, above, -1e-3 * down, found)
+    np.testing.assert_allclose(rest.lowering_step(scene.potential, above, -1e-4 * down, found), rests, atol=1e-15)
+    far = rest.lowering_step(scene.potential, above, -1e-3 * down, found)
     assert far[1] == pytest.approx(rests[1] + 1e-4 - 1.25e-4)  # the eighth is the first that raises no energy
     assert far[4] - far[1] == pytest.approx(rests[4] - rests[1])
 
@@ -180,19 +182,19 @@ def test_bodies_fall_along_the_way_that_takes_the_most_energy():
     k = scene.contacts.k[:2].sum()
     pose = np.array([0.0, -2 * WEIGHT / k, 0.0, 0.0, -3 * WEIGHT / k, 0.0])
     search = search_in(scene)
-    trial = rest.tried(scene.potential, search, pose)
-    grips, way = trial.grips, rest.falling_way(scene.potential, search, trial)
+    trial = rest.trial_at(scene.potential, search, pose)
+    friction, way = trial.friction, rest.falling_direction(scene.potential, search, trial)
     assert way is not None
     assert abs(way[2]) > 0
     assert way[2] * way[5] > 0
-    fallen = rest.let_go(scene.potential, trial, way)
+    fallen = rest.fallen_pose(scene.potential, trial, way)
     far = (fallen - pose)[2] / way[2]
     np.testing.assert_allclose(fallen[[2, 5]], pose[[2, 5]] + far * way[[2, 5]], rtol=1e-9)
-    held, stiffness = way @ grips.held, way @ rest.shear_stiffness(grips, 1.0) @ way
+    drag, stiffness = way @ friction.generalised, way @ rest.shear_stiffness(friction, 1.0) @ way
 
     def energy(part):
-        held_too = -part * far * held + 0.5 * (part * far) ** 2 * stiffness
-        return scene.potential.energy(pose + part * far * way) + held_too
+        of_friction = -part * far * drag + 0.5 * (part * far) ** 2 * stiffness
+        return scene.potential.energy(pose + part * far * way) + of_friction
 
     first = 1e-2 * scene.potential.pressed(pose).max() / np.abs(way).max()
     assert abs(far) > first

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...geometry.hull import Convex, ways_across_edges
+from ...geometry.hull import Convex, edge_separating_axes
 from ...quantities import Array, Integers, named
 from .blocks.compound import AnyBlock
 from .blocks.joints import SHORTEST_JOINT, Joint, neighbours
@@ -211,7 +211,7 @@ def along_lines(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint]
 
 def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
     """Where two convex bodies touch without a common face, empty where they do not."""
-    ways = np.concatenate([one.normals, other.normals, ways_across_edges(one, other)])
+    ways = np.concatenate([one.normals, other.normals, edge_separating_axes(one, other)])
     along, beside = one.corners @ ways.T, other.corners @ ways.T
     apart = np.maximum(beside.min(axis=0) - along.max(axis=0), along.min(axis=0) - beside.max(axis=0))
     if abs(apart.max()) > tolerance:

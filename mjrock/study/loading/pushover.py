@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...bars import counted
 from ...geometry.frames import frames_of
-from ...geometry.kinematics import gaps, meeting, over_face, snaps, stretch, where_friction_acts
+from ...geometry.kinematics import gaps, meeting, relative_velocity, snaps, stretch, where_friction_acts
 from ...geometry.vectors import dot, tangent
 from ...notebook import NotebookPicture
 from ...problem.damping.contacts import Contacts, Uplift
@@ -92,7 +92,7 @@ def _lever(scene: Scene, toe: int, pose: Array) -> float:
     """Height of the held point of the outer edge above the centroid [m]: its slip for a unit of angular velocity."""
     places, frames = scene.places, frames_of(pose)
     acts = where_friction_acts(places, meeting(places, toe, frames))
-    return dot(tangent(acts.normal), over_face(places, toe, acts, frames, np.array([0.0, 0.0, 1.0])))
+    return dot(tangent(acts.normal), relative_velocity(places, toe, acts, frames, np.array([0.0, 0.0, 1.0])))
 
 
 def _carried(scene: Scene, potential: Potential, pose: Array) -> tuple[Array, Array] | None:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....geometry import convex
-from ....geometry.hull import SHAPES, Convex, Side, ways_across_edges
+from ....geometry.hull import SHAPES, Convex, Side, edge_separating_axes
 from ....quantities import Array, Integers, frozen, short_repr
 from .joints import (
     LEVEL,
@@ -268,7 +268,7 @@ def joints_in_space(
 
 def _depth_across_edges(block: Convex, neighbour: Convex) -> float:
     """The least depth by which two blocks overlap across an edge of each, infinite where these are parallel [m]."""
-    across = ways_across_edges(block, neighbour)
+    across = edge_separating_axes(block, neighbour)
     if not len(across):
         return np.inf
     along, beside = block.corners @ across.T, neighbour.corners @ across.T
