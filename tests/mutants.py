@@ -171,7 +171,7 @@ EQUIVALENT = {
         "no contact at rest has a dashpot that is read"
     ),
     "bond_law.py: closing: float = 1": "the search for a plastic closing ends at the same one from anywhere",
-    "bond_law.py: bond.crushed = bond.crushed + high if high <= left else bond.hardening": (
+    "bond_law.py: bond.crushed = bond.crushed + high if high <= remaining else bond.hardening": (
         "at the peak both are the same"
     ),
     "bond_law.py: if math.hypot(bond.k * (gap + closing), sheared) <= hardened(bond, closing):": (
@@ -181,7 +181,7 @@ EQUIVALENT = {
         "what is not crushed closes by zero in the search, too"
     ),
     "bond_law.py: pressed = bond.k / gap": ("what is not crushed closes by zero in the search, too"),
-    "bond_law.py: if bond.k * (far + crack) <= strength:": (
+    "bond_law.py: if bond.k * (largest + crack) <= strength:": (
         "once there is a crack, the spring holds what is left of the strength, or more where slip has worn it"
     ),
     "bond_law.py: PASSES = 16": "eight passes have found the opening and the closing to rounding",

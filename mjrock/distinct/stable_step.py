@@ -13,7 +13,7 @@ import scipy
 from scipy.sparse import csr_array, vstack
 
 from ..linear import block_diagonal, rates_of, times
-from ..problem.masonry.blocks.joints_in_space import axes_across
+from ..problem.masonry.blocks.joints_in_space import tangent_axes
 from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
 from ..scene.time_step import stable_step
@@ -94,7 +94,7 @@ def ways_of(normal: Array) -> tuple[Array, ...]:
     """Unit vectors along the normals of lines, and along their faces one in the plane and two in space, (m, d) each."""
     if normal.shape[1] == 2:
         return normal, np.column_stack([normal[:, 1], -normal[:, 0]])
-    return normal, *np.moveaxis(axes_across(normal), 1, 0)
+    return normal, *np.moveaxis(tangent_axes(normal), 1, 0)
 
 
 def line_rates(lines: Rows, way: Array, bodies: int) -> csr_array:

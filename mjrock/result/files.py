@@ -23,7 +23,7 @@ from ..contacts.files import quoted, replacing, write_text
 from ..geometry.poses import rotations
 from ..problem.masonry.blocks.joints_in_space import SpaceJoint
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.files.compas import guid_of, held, model_guid
+from ..problem.masonry.files.compas import guid_of, model_guid, part_entry
 from ..quantities import Array, Integers, require_path
 from .bodies import Body, without_jumps
 from .forces import Forces
@@ -243,14 +243,14 @@ def results_text(case: MasonryCase, bodies: list[Body], at: float, forces: Force
         "edge_data": edges,
         "metadata": {"solver": "mjrock", "time": at},
     }
-    return json.dumps(held("compas_dem.problem/Results", content, guid_of("results", at)), indent=1) + "\n"
+    return json.dumps(part_entry("compas_dem.problem/Results", content, guid_of("results", at)), indent=1) + "\n"
 
 
 def _transformation(body: Body, name: str) -> Json:
     """The transformation from the drawn to the present position of a body."""
     turn, matrix = rotations(body.pose)[0], np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = turn, body.rest + body.pose[0, :3] - turn @ body.rest
-    return held("compas.geometry/Transformation", {"matrix": matrix.tolist()}, guid_of("transformation", name))
+    return part_entry("compas.geometry/Transformation", {"matrix": matrix.tolist()}, guid_of("transformation", name))
 
 
 def _edge(case: MasonryCase, bodies: list[Body], forces: Forces, sample: int, number: int) -> tuple[str, Json]:
@@ -269,14 +269,14 @@ def _edge(case: MasonryCase, bodies: list[Body], forces: Forces, sample: int, nu
     total = pressed * normal + slid @ along
     slides = presses and np.linalg.norm(slid) >= SLIPS * case.masonry.joint_friction[number] * pressed
     frame = {"point": corners.mean(axis=0).tolist(), "xaxis": along[0].tolist(), "yaxis": along[1].tolist()}
-    where = held("compas.geometry/Frame", frame, guid_of("frame", joint.name))
+    where = part_entry("compas.geometry/Frame", frame, guid_of("frame", joint.name))
     guids = [guid_of("point", (joint.name, i)) for i in range(len(corners))]
-    points = [held("compas.geometry/Point", *point) for point in zip(corners.tolist(), guids, strict=True)]
+    points = [part_entry("compas.geometry/Point", *point) for point in zip(corners.tolist(), guids, strict=True)]
     rows = np.column_stack([*parts.values()]).tolist()
     at_points = [{"c_np": max(0.0, n), "c_nn": max(0.0, -n), "c_u": u, "c_v": v} for n, u, v in rows]
     contact = {"points": points, "frame": where, "size": joint.area, "mesh": None, "name": joint.name}
     contact["forces"] = at_points
-    polygon = held("compas.geometry/Polygon", {"points": corners.tolist()}, guid_of("polygon", joint.name))
+    polygon = part_entry("compas.geometry/Polygon", {"points": corners.tolist()}, guid_of("polygon", joint.name))
     edge = {
         "face_contact": True,
         "edge_contact": False,
@@ -284,7 +284,7 @@ def _edge(case: MasonryCase, bodies: list[Body], forces: Forces, sample: int, nu
         "contact_polygon": polygon,
         "contact_points": corners.tolist(),
         "contact_frame": where,
-        "contact_data": held("compas_dem.interactions/FrictionContact", contact, guid_of("contact", joint.name)),
+        "contact_data": part_entry("compas_dem.interactions/FrictionContact", contact, guid_of("contact", joint.name)),
         **{f"force_{name}": part.tolist() for name, part in parts.items()},
         "force_point": (shares @ corners).tolist(),
         "resultant_global": total.tolist(),

@@ -11,7 +11,7 @@ from ..machine import memory
 from ..problem.masonry.blocks.compound import AnyBlock
 from ..problem.masonry.blocks.polyhedron import Polyhedron
 from ..problem.masonry.case import MasonryCase
-from ..problem.masonry.effects import applied, laden, place_in_world
+from ..problem.masonry.effects import applied, place_in_world, with_added_masses
 from ..problem.masonry.histories import motions_of_tilt
 from ..problem.masonry.laws.own_law import Own
 from ..problem.masonry.limit.statics import falling, friction_lacking, nudged, slippery
@@ -202,7 +202,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
     """The scene of masonry, which all cases of it with the same effects share."""
     blocks, free, number = masonry.blocks, list(masonry.free), free_numbers(masonry.blocks)
     lines, table = _sorted(masonry.lines, number), masonry.table
-    mass, centroids, inertia = laden(masonry, effects)
+    mass, centroids, inertia = with_added_masses(masonry, effects)
     origin = np.where(number[:, None] == GROUND, 0.0, centroids)
     middles = np.array([joint.middle for joint in masonry.joints])
     limits = Limits()

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 import mjrock as mr
-from mjrock.problem.masonry.effects import laden
+from mjrock.problem.masonry.effects import with_added_masses
 from mjrock.problem.masonry.histories import motions_of_tilt
 from mjrock.result.bodies import BodyMotion
 from mjrock.result.ties import across
@@ -60,7 +60,7 @@ def masses(case: mr.Case | mr.MasonryCase) -> np.ndarray:
     """Mass of each body with what is added to it [kg]."""
     if isinstance(case, mr.Case):
         return np.array([case.wall.mass])
-    return np.asarray(laden(case.masonry, case.passive)[0][list(case.masonry.free)])
+    return np.asarray(with_added_masses(case.masonry, case.passive)[0][list(case.masonry.free)])
 
 
 def scale_of(answer: mr.Response) -> float:

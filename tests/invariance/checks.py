@@ -8,7 +8,7 @@ import numpy as np
 
 import mjrock as mr
 from mjrock.geometry.poses import rotations
-from mjrock.problem.masonry.effects import laden
+from mjrock.problem.masonry.effects import with_added_masses
 
 from .balance import is_stepwise, unbalanced, unbalanced_bodies
 from .quantities import Scene
@@ -100,7 +100,7 @@ def below_the_ground(scene: Scene, answer: mr.Response) -> float:
             shift = support.at(answer.t)
     low, high = corners.min(axis=0), corners.max(axis=0)
     turned, most = rotations(answer.pose), 0.0
-    rest = laden(masonry, answer.case.effects)[1]
+    rest = with_added_masses(masonry, answer.case.effects)[1]
     for i, number in enumerate(masonry.free):
         block, middle = masonry.blocks[number], rest[number] + answer.pose[:, i, :d] - shift
         placed = on_a_slope(middle[:, None] + (block.corners - rest[number]) @ turned[:, i].swapaxes(1, 2), level)

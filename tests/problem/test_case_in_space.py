@@ -7,7 +7,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.problem.masonry.effects import applied as applied_to
-from mjrock.problem.masonry.effects import held_at
+from mjrock.problem.masonry.effects import point_of_effect
 from mjrock.study.campaign.task import fingerprint
 
 box = mr.Polyhedron.box
@@ -43,13 +43,13 @@ def test_a_case_in_space_has_three_motions_and_six_velocities():
 
 def test_effects_act_at_points():
     tie = mr.Tie(stiffness=1e6, at=TOP, anchor=(0.2, 3.1, 7.0), slack=0.1, block=2)
-    assert held_at(tie).tolist() == list(TOP)
+    assert point_of_effect(tie).tolist() == list(TOP)
     assert (tie.height, tie.reach) == (3.0, pytest.approx(5.1))
     behind = mr.Tie(stiffness=1e6, at=TOP, length=3.0, block=2, anchor_height=7.0)
-    assert behind.anchor_of(held_at(behind)) == pytest.approx([-2.8, 0.1, 7.0])
+    assert behind.anchor_of(point_of_effect(behind)) == pytest.approx([-2.8, 0.1, 7.0])
     assert behind.reach == 5.0
     bound = mr.Damper(c=1e3, at=TOP, anchor=(0.2, 0.1, 2.0), anchor_block=1, block=2)
-    assert bound.anchor_of(held_at(bound)) == pytest.approx([0.2, 0.1, 2.0])
+    assert bound.anchor_of(point_of_effect(bound)) == pytest.approx([0.2, 0.1, 2.0])
     thrust = mr.Thrust(force=5.0, at=TOP, direction=(0, 3, 4), block=2)
     assert thrust.force_vector == pytest.approx([0, 3, 4])
     assert mr.Thrust(force=5.0, at=TOP).force_vector == (5, 0, 0)

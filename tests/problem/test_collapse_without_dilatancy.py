@@ -271,7 +271,7 @@ def test_a_state_that_does_not_hold_is_none():
     grown = np.zeros((3, 3))
     grown[:, 0] = [mr.GRAVITY * masonry.blocks[i].mass for i in masonry.free]
     programme = Programme.from_forces(
-        masonry, weight_of(masonry), grown, masonry.lines.across, Pulls.from_forces(masonry)
+        masonry, weight_of(masonry), grown, masonry.lines.tangents, Pulls.from_forces(masonry)
     )
     state = states_without_dilatancy(programme)[0]
     assert programme.holds(state)

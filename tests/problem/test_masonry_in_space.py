@@ -141,7 +141,7 @@ def test_rates_are_differences_of_a_small_motion():
     ]
     m = np.arange(len(lines.k))
     apart = np.array(velocity)[lines.body, m] - np.array(velocity)[lines.face, m]
-    for direction in (lines.normal, *lines.across):
+    for direction in (lines.normal, *lines.tangents):
         got = rates(masonry.blocks, lines, direction) @ motion.ravel()
         assert got == pytest.approx((apart * direction).sum(axis=1), abs=1e-12)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.problem.masonry.effects import applied, laden, pulls_of
+from mjrock.problem.masonry.effects import applied, pulls_of, with_added_masses
 
 WALL = mr.Block.from_size(0.6, 4.2)
 HALF = mr.Block.from_size(0.6, 2.1)
@@ -143,7 +143,7 @@ def test_a_small_mass_counts_as_a_large_one():
     """Half a kilogram on a brick of a kilogram, beside its centroid."""
     brick = mr.Polygon([(0, 0), (0.1, 0), (0.1, 0.1), (0, 0.1)], density=100.0)
     masonry = mr.Masonry([mr.Polygon([(-1, -1), (1, -1), (1, 0), (-1, 0)], fixed=True), brick], k_n=1e7)
-    mass, centroids, inertia = laden(masonry, (mr.AddedMass(0.5, 0.09, 0.03, block=1),))
+    mass, centroids, inertia = with_added_masses(masonry, (mr.AddedMass(0.5, 0.09, 0.03, block=1),))
     assert mass[1] == pytest.approx(1.5)
     np.testing.assert_allclose(centroids[1], [0.05 + 0.03 / 3, 0.05 + 0.04 / 3])
     assert inertia[1] == pytest.approx(0.1**2 / 6 + 1.0 * 0.5 / 1.5 * 0.05**2)

@@ -11,7 +11,7 @@ from mjrock.engine.energy_work import ledger
 from mjrock.engine.model import engine_of
 from mjrock.engine.stepping import fitted_steps
 from mjrock.problem.wall.effect import LinkLaw
-from mjrock.problem.wall.restoring_moment import taken, yielded
+from mjrock.problem.wall.restoring_moment import dissipated_by_ties, yielded
 from mjrock.scene.parts import Links
 from mjrock.scene.potential import breaks
 from mjrock.scene.wall import wall_scene
@@ -177,7 +177,7 @@ def test_what_ties_have_taken_with_those_that_broke(wall):
     plastic = yielded(pulls, np.array([0.0, 0.3, 0.1]) * wall.alpha)
     assert np.isinf(plastic[1:, 0]).all()
     own = broken.strength * broken.ultimate + 0.5 * broken.strength**2 / broken.stiffness
-    assert taken(pulls, plastic) == pytest.approx([0.0, *2 * [own + whole.strength * plastic[1, 1]]])
+    assert dissipated_by_ties(pulls, plastic) == pytest.approx([0.0, *2 * [own + whole.strength * plastic[1, 1]]])
 
 
 def test_a_tie_of_masonry_breaks(wall):

@@ -32,15 +32,15 @@ def edges_of(faces: Sequence[Face], origins: Array, met: Sequence[Face]) -> tupl
     Returns:
         The edges, and the number of the first one of each face, with that after the last, shape (faces + 1,).
     """
-    begin = np.cumsum([0, *(len(face.ways) for face in faces)])
+    begin = np.cumsum([0, *(len(face.edge_normals) for face in faces)])
     edges = rows(kinds(origins.shape[1]).edge, int(begin[-1]))
     pairs = zip(faces, met, strict=True)
-    shapes = np.array([(len(one.ways), len(one.corners), len(other.corners)) for one, other in pairs])
+    shapes = np.array([(len(one.edge_normals), len(one.corners), len(other.corners)) for one, other in pairs])
     for shape in np.unique(shapes, axis=0):
         which = np.flatnonzero((shapes == shape).all(axis=1)).tolist()
         ways, corners, others = (
             np.array(each)
-            for each in zip(*((faces[i].ways, faces[i].corners, met[i].corners) for i in which), strict=True)
+            for each in zip(*((faces[i].edge_normals, faces[i].corners, met[i].corners) for i in which), strict=True)
         )
         along = ways.swapaxes(1, 2)
         places = (corners - origins[which][:, None]) @ along  # (faces, corners, edges)

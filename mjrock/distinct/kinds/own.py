@@ -26,10 +26,10 @@ from ...problem.masonry.laws.own_law import OF_K_N, Own
 from ...problem.wall.user_law import (
     ANSWERS,
     OF_DAMPING,
+    OF_DISSIPATED,
     OF_ENERGY,
     OF_LOST,
     OF_STRESS,
-    OF_TAKEN,
     ROOM,
     layout,
 )
@@ -272,7 +272,7 @@ def take_answer(own: Row, books: Books, closing: float, rate: float, h: float) -
     since the last pose, a time h ago [s]."""
     stress, energy = own.values[OF_STRESS], own.values[OF_ENERGY]
     answer(own.values, own.address, closing, rate)
-    if own.values[OF_TAKEN] != 0 and h > 0:
+    if own.values[OF_DISSIPATED] != 0 and h > 0:
         work = 0.5 * h * (stress + own.values[OF_STRESS]) * rate
         taken = own.area * (work - (own.values[OF_ENERGY] - energy))
         if closing > 0:

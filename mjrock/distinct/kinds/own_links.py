@@ -8,7 +8,7 @@ import numpy as np
 
 from ...compiled import inlined
 from ...problem.masonry.case import AnyCase
-from ...problem.wall.user_law import OF_DAMPING, OF_ENERGY, OF_STRESS, OF_TAKEN, ROOM
+from ...problem.wall.user_law import OF_DAMPING, OF_DISSIPATED, OF_ENERGY, OF_STRESS, ROOM
 from ...quantities import Array
 from ...scene.scene import Scene
 from ..rows import Fields, Row, Rows, integers
@@ -69,7 +69,7 @@ class OwnLinks(Kind, Table):
             answer(link.values, link.address, now.length - link.reach, ahead)
             dragged = link.values[OF_DAMPING]
             books.links[link.account] += 0.5 * h * (link.dragged + dragged) * rate
-            if link.values[OF_TAKEN] != 0 and h > 0:
+            if link.values[OF_DISSIPATED] != 0 and h > 0:
                 work = 0.5 * h * (bears + link.values[OF_STRESS]) * rate
                 books.links[link.account] += work - (link.values[OF_ENERGY] - held)
             link.rate, link.dragged = rate, dragged

@@ -16,7 +16,7 @@ from ...geometry.graph import connected_parts
 from ...geometry.hull import Convex, Side, area_vector
 from ...geometry.vectors import Vector, increase, put
 from ...problem.masonry.blocks.joints import PARTS_APART
-from ...problem.masonry.blocks.joints_in_space import axes_across
+from ...problem.masonry.blocks.joints_in_space import tangent_axes
 from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
 
@@ -242,7 +242,7 @@ def whole_outlines(outlines: Sequence[Integers], side: Integers, corners: Array,
     for number in of[counts > 1]:
         faces = np.flatnonzero(side == number)
         points = np.unique(np.concatenate([outlines[face] for face in faces.tolist()]))
-        flat = corners[points] @ axes_across(normals[faces[:1]])[0].T
+        flat = corners[points] @ tangent_axes(normals[faces[:1]])[0].T
         ring = cleaned(flat[scipy.spatial.ConvexHull(flat).vertices], PARTS_APART)
         hull = points[np.array([np.hypot(*(flat - at).T).argmin() for at in ring])]
         for face in faces.tolist():

@@ -226,10 +226,10 @@ class GroundMotion:
             j = np.minimum(positions.astype(int), last)
             parts, length = positions - j, self.dt
         else:
-            held = np.clip(_instants(t), 0, self.duration)
-            j = np.minimum(np.searchsorted(self.instants, held, "right") - 1, last)
+            place = np.clip(_instants(t), 0, self.duration)
+            j = np.minimum(np.searchsorted(self.instants, place, "right") - 1, last)
             length = self.instants[j + 1] - self.instants[j]
-            parts = (held - self.instants[j]) / length
+            parts = (place - self.instants[j]) / length
         return j, length * parts, parts * (self.accel[j + 1] - self.accel[j])
 
     @property

@@ -121,11 +121,11 @@ def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
         ValueError: for a name that goes with others in more than one way.
     """
     groups = list(_by_header(headers))
-    taken = {name for group in groups for name in group.tokens}
-    groups += _by_names({name: header for name, header in headers.items() if name not in taken})
-    taken = {name for group in groups for name in group.tokens}
+    used = {name for group in groups for name in group.tokens}
+    groups += _by_names({name: header for name, header in headers.items() if name not in used})
+    used = {name for group in groups for name in group.tokens}
     for name, header in headers.items():
-        if name not in taken:
+        if name not in used:
             upright = [token for token, _ in _candidates(name, header) if re.fullmatch(UPRIGHT_CODES, token)]
             stream = header.get("STREAM", "")
             token = stream if is_direction(stream) or not upright else upright[-1]
@@ -265,7 +265,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         if alone := [name for name, components in self.items() if not _level(components)]:
             raise ValueError(f"{named(alone)}: no horizontal component; del records[{alone[0]!r}] leaves it out")
         scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
-        return _found(scaled, self)
+        return _with_origins(scaled, self)
 
     def mean_over(self, spectrum: SpectrumOfCode, periods: ArrayLike, damping: float = 0.05) -> Array:
         """Mean of the spectra of the horizontal components over that of a code at each period [-], shape (n,).
@@ -361,7 +361,7 @@ def records_in(
         unused = key if key not in found else next(iter(tokens))
         found[unused] = tuple(_directed(single[name], token) for name, token in tokens.items())
         found.by |= {unused: by} if len(tokens) > 1 else {}
-    return _found(dict(sorted(found.items())), found)
+    return _with_origins(dict(sorted(found.items())), found)
 
 
 def _read_all(
@@ -398,7 +398,7 @@ def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:
     return [motion for motion in components if not is_vertical(motion.header.get("STREAM", ""))]
 
 
-def _found(records: Records, *origins: Records) -> RecordSet:
+def _with_origins(records: Records, *origins: Records) -> RecordSet:
     """A set, with what the sets that it is made of know of their files."""
     made = RecordSet(records)
     for origin in origins:
@@ -410,7 +410,7 @@ def _found(records: Records, *origins: Records) -> RecordSet:
 
 def _joined(one: Records, other: Records) -> RecordSet:
     """The records of two sets; those of the second where both have one of a name."""
-    return _found({**one, **other}, one, other)
+    return _with_origins({**one, **other}, one, other)
 
 
 def scaled_together(

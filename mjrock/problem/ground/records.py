@@ -651,8 +651,8 @@ def _names(head: Sequence[str], rows: Sequence[Sequence[float]]) -> list[str]:
     """Names of the columns: the last line of the header if it has as many words as the rows have columns."""
     last = next((line for line in reversed(head) if line.strip()), "").lstrip("#%/ ")
     width = len(rows[-1]) if rows else 0
-    for apart in (";", "\t", ",", r"\s{2,}", r"\s+"):
-        names = [name.strip(' "\t') for name in re.split(apart, last)]
+    for separator in (";", "\t", ",", r"\s{2,}", r"\s+"):
+        names = [name.strip(' "\t') for name in re.split(separator, last)]
         names = names[:-1] if names and not names[-1] else names
         if len(names) == width and any(names):
             return names

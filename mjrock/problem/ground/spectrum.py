@@ -149,8 +149,8 @@ class CodeSpectrum:
         below = self(short, damping) * (short / (2 * math.pi)) ** 2
         ground = 0.025 * self.ag * self.S * self.TC * self.TD
         share = np.clip((periods - self.TE) / (FIRM - self.TE), 0.0, 1.0) if math.isfinite(self.TE) else 0.0
-        far = ground * (self.amplification * eta + (1 - self.amplification * eta) * share)
-        return np.where(periods > self.TE, far, below)
+        largest = ground * (self.amplification * eta + (1 - self.amplification * eta) * share)
+        return np.where(periods > self.TE, largest, below)
 
     @property
     def peak(self) -> float:

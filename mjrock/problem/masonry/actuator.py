@@ -118,9 +118,9 @@ class Actuator(Effect):
     @property
     def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
-        far = max(self.displacement[1], key=abs)
+        largest = max(self.displacement[1], key=abs)
         where = "all blocks" if self.at is None else f"z = {self.height:g} m"
-        return f"{where},\nto {1e3 * far:g} mm, k = {self.stiffness / 1e6:.4g} kN/mm"
+        return f"{where},\nto {1e3 * largest:g} mm, k = {self.stiffness / 1e6:.4g} kN/mm"
 
 
 def _unit(direction: object, d: int) -> tuple[float, ...]:

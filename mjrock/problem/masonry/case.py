@@ -34,12 +34,12 @@ from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
 from .effects import (
-    held_at,
-    laden,
     place_in_world,
+    point_of_effect,
     require_anchored,
     require_placed,
     require_pushing,
+    with_added_masses,
     with_block_numbers,
 )
 from .histories import OfSupports, Support, Tilt, supports_of, tilt_history
@@ -74,33 +74,33 @@ def stood(case: MasonryCase) -> float:
 
 @lru_cache(maxsize=16)
 def _multiplier(masonry: Masonry) -> float:
-    ways = np.eye(masonry.freedom.translations)[0] * [[1.0], [-1.0]]
+    senses = np.eye(masonry.freedom.translations)[0] * [[1.0], [-1.0]]
     try:
-        return min(limit_of(masonry, LimitLoads(way, pushed(masonry, way))).multiplier for way in ways)
+        return min(limit_of(masonry, LimitLoads(sense, pushed(masonry, sense))).multiplier for sense in senses)
     except ValueError:  # it cannot stand, which the solvers say
         return math.inf
 
 
 def _room(masonry: Masonry, link: Anchored) -> tuple[float, float]:
     """Largest extent of the block that a link holds, and of all free blocks along the link [m]."""
-    held = np.zeros(2) if link.at is None else held_at(link)
-    way = held - link.anchor_of(held)
-    return 2 * masonry.blocks[link.block].size, _extent(masonry, way / np.linalg.norm(way))
+    point = np.zeros(2) if link.at is None else point_of_effect(link)
+    direction = point - link.anchor_of(point)
+    return 2 * masonry.blocks[link.block].size, _extent(masonry, direction / np.linalg.norm(direction))
 
 
-def _extent(masonry: Masonry, way: Array) -> float:
+def _extent(masonry: Masonry, direction: Array) -> float:
     """Extent of all free blocks along a unit vector [m]."""
-    return float(np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]) @ way))
+    return float(np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]) @ direction))
 
 
 def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
     """A doubt about an actuator, empty where there is none."""
-    far, extent = max(map(abs, jack.displacement[1])), _extent(masonry, jack.way)
-    if far > extent and jack.stiffness * far > OF_THE_WEIGHT * mass * GRAVITY:
-        return f"{name}: displacement reaches {far:g} m, and the masonry is {extent:.3g} m long there: is it in mm?"
-    if 0 < jack.stiffness * far < NEGLIGIBLE_SHARE * mass * GRAVITY:
+    largest, extent = max(map(abs, jack.displacement[1])), _extent(masonry, jack.way)
+    if largest > extent and jack.stiffness * largest > OF_THE_WEIGHT * mass * GRAVITY:
+        return f"{name}: displacement reaches {largest:g} m, and the masonry is {extent:.3g} m long there: is it in mm?"
+    if 0 < jack.stiffness * largest < NEGLIGIBLE_SHARE * mass * GRAVITY:
         return (
-            f"{name}: stiffness = {jack.stiffness:g} N/m pushes with at most {jack.stiffness * far:.3g} N, and the "
+            f"{name}: stiffness = {jack.stiffness:g} N/m pushes with at most {jack.stiffness * largest:.3g} N, and the "
             f"masonry weighs {mass * GRAVITY:.3g} N: is it in N/m?"
         )
     return ""
@@ -108,7 +108,7 @@ def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
 
 FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
-HELD_BY_GUIDE = 1e-3
+REMOVED_BY_GUIDE = 1e-3
 """Largest speed that the guide of an actuator takes from a block at a start, over sqrt(g size) [-]."""
 COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports", "settled", "tilt")
 """What two equal cases share, beside the velocity."""
@@ -274,12 +274,12 @@ class MasonryCase(Carrying):
     @cached_property
     def masses(self) -> Array:
         """Mass of each block with its added masses [kg], shape (blocks,)."""
-        return laden(self.masonry, self.effects)[0]
+        return with_added_masses(self.masonry, self.effects)[0]
 
     @cached_property
     def centroids(self) -> Array:
         """Centroid of each block with its added masses at rest [m], shape (blocks, d)."""
-        return laden(self.masonry, self.effects)[1]
+        return with_added_masses(self.masonry, self.effects)[1]
 
     @cached_property
     def rests(self) -> Array:
@@ -324,7 +324,7 @@ class MasonryCase(Carrying):
         if not guiding:
             return velocity
         smallest = min(self.masonry.blocks[block].size for block in guiding)
-        self.require_guided("start, velocity", velocity, HELD_BY_GUIDE * math.sqrt(GRAVITY * smallest))
+        self.require_guided("start, velocity", velocity, REMOVED_BY_GUIDE * math.sqrt(GRAVITY * smallest))
         return np.where(self.guided, 0.0, velocity)
 
     @property
@@ -342,14 +342,14 @@ class MasonryCase(Carrying):
     def guided(self) -> Flags:
         """Which velocities of blocks that are not fixed guides of actuators keep at zero, shape (bodies, nv)."""
         d = self.masonry.freedom.translations
-        held = np.zeros((len(self.masonry.free), self.masonry.freedom.nv), dtype=bool)
+        allowed = np.zeros((len(self.masonry.free), self.masonry.freedom.nv), dtype=bool)
         for actuator in self.actuators.values():
             if not any(actuator.guide):
                 continue  # it may drive all blocks
             body = self.masonry.free.index(actuator.block)
-            held[body, d - 1] |= actuator.guide.rising
-            held[body, d:] |= actuator.guide.turning
-        return held
+            allowed[body, d - 1] |= actuator.guide.rising
+            allowed[body, d:] |= actuator.guide.turning
+        return allowed
 
     def require_guided(self, name: str, velocity: Array, most: float = 0.0) -> None:
         """Raise a ValueError that names the block where a guide holds one that moves as it may not.
@@ -359,13 +359,13 @@ class MasonryCase(Carrying):
             velocity: of the blocks that are not fixed [m/s, rad/s], shape (bodies, nv).
             most: velocity that is taken for none, rotations times the size of the block [m/s].
         """
-        held, d = self.guided, self.masonry.freedom.translations
-        for body in np.flatnonzero(held.any(axis=1)).tolist():
+        removed, d = self.guided, self.masonry.freedom.translations
+        for body in np.flatnonzero(removed.any(axis=1)).tolist():
             block, speeds = self.masonry.free[body], np.abs(velocity[body])
             speeds[d:] *= self.masonry.blocks[block].size
-            if (speeds[held[body]] > most).any():
+            if (speeds[removed[body]] > most).any():
                 axes = (*"xyz",) if d == 3 else (*"xz",)
-                may = " and ".join(axis for axis, no in zip(axes, held[body], strict=False) if not no)
+                may = " and ".join(axis for axis, no in zip(axes, removed[body], strict=False) if not no)
                 raise ValueError(
                     f"{name} of {self.masonry.names[block]} = {velocity[body].tolist()}: its actuator guides it, which "
                     f"lets it move along {may} alone; the others are 0"

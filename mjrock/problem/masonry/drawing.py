@@ -211,17 +211,17 @@ def along_lines(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint]
 
 def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
     """Where two convex bodies touch without a common face, empty where they do not."""
-    ways = np.concatenate([one.normals, other.normals, edge_separating_axes(one, other)])
-    along, beside = one.corners @ ways.T, other.corners @ ways.T
-    apart = np.maximum(beside.min(axis=0) - along.max(axis=0), along.min(axis=0) - beside.max(axis=0))
-    if abs(apart.max()) > tolerance:
+    axes = np.concatenate([one.normals, other.normals, edge_separating_axes(one, other)])
+    along, beside = one.corners @ axes.T, other.corners @ axes.T
+    gap = np.maximum(beside.min(axis=0) - along.max(axis=0), along.min(axis=0) - beside.max(axis=0))
+    if abs(gap.max()) > tolerance:
         return ""
-    between = ways[apart > -SHORTEST_JOINT * tolerance]
+    between = axes[gap > -SHORTEST_JOINT * tolerance]
     if np.abs(between @ between[0]).min() < ALIKE:
         return ""
-    way = int(apart.argmax())
-    sense = 1 if along[:, way].mean() > beside[:, way].mean() else -1
-    low, high = sense * along[:, way], sense * beside[:, way]
+    axis = int(gap.argmax())
+    sense = 1 if along[:, axis].mean() > beside[:, axis].mean() else -1
+    low, high = sense * along[:, axis], sense * beside[:, axis]
     fewest = min((low < low.min() + tolerance).sum(), (high > high.max() - tolerance).sum())
     return "at a corner" if in_space and fewest == 1 else "along a line"
 
@@ -244,15 +244,15 @@ def smallest_gap(
         reach: the gap that gives them none.
     """
     low, high = (np.array([end(block.corners, axis=0) for block in blocks]) for end in (np.min, np.max))
-    apart = np.array([np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1) for i in loose])
-    apart[np.arange(len(loose)), loose] = np.inf
-    one, other = divmod(int(apart.argmin()), len(blocks))
+    gaps = np.array([np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1) for i in loose])
+    gaps[np.arange(len(loose)), loose] = np.inf
+    one, other = divmod(int(gaps.argmin()), len(blocks))
     pair = f"{names[loose[one]]} and {names[other]}"
     touches = [touch for touch in along_lines(blocks, (), reach) if {touch.block, touch.other} & set(loose)]
     text = f"{touches_text(touches, names)}; " if touches else ""
     if set(loose) <= {i for touch in touches for i in (touch.block, touch.other)}:
         return text.removesuffix("; ")
-    text += f"between the bounds of {pair} there are {apart[one, other]:.3g} m"
+    text += f"between the bounds of {pair} there are {gaps[one, other]:.3g} m"
     needed = needed_gap(loose, joints_within, reach)
     if needed is None:
         return f"{text}, and no gap up to {WIDEST_TOLERANCE:g} m joins all of them"
@@ -288,8 +288,8 @@ def split_faces(joints: Sequence[Joint | SpaceJoint], blocks: Sequence[AnyBlock]
         if isinstance(joint, SpaceJoint) and len(blocks[joint.below].parts) == len(blocks[joint.above].parts) == 1:
             normals[joint.below, joint.above].append(joint.normal)
     odd = []
-    for pair, ways in normals.items():
-        if len(ways) > 1 and (np.array(ways) @ np.transpose(ways) - np.eye(len(ways))).max() > ALIKE:
+    for pair, each in normals.items():
+        if len(each) > 1 and (np.array(each) @ np.transpose(each) - np.eye(len(each))).max() > ALIKE:
             odd.append(f"{names[pair[0]]} and {names[pair[1]]}")
     if not odd:
         return ""

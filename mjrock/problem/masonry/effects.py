@@ -20,7 +20,7 @@ BESIDE = 1e-3
 def place_in_world(masonry: Masonry, effect: Effect) -> tuple[float, ...]:
     """Where an effect acts on its block, from the origin of the world [m]."""
     if effect.at is not None:
-        return tuple(held_at(effect).tolist())
+        return tuple(point_of_effect(effect).tolist())
     block = masonry.polygons[effect.block]
     x = block.left_at(effect.height) if effect.on_face else float(block.centroid[0]) + effect.offset
     return x, effect.height
@@ -35,16 +35,16 @@ def applied(masonry: Masonry, effects: tuple[Effect, ...]) -> Array:
     for effect in effects:
         force = effect.force_vector or (0.0, 0.0, -GRAVITY * effect.mass_added)
         arm = place_in_world(masonry, effect) - masonry.centroids[effect.block]
-        total[masonry.free.index(effect.block)] += acting(arm, np.array(force)[list(masonry.freedom.axes)])
+        total[masonry.free.index(effect.block)] += wrench(arm, np.array(force)[list(masonry.freedom.axes)])
     return total
 
 
-def dragged(masonry: Masonry, effects: tuple[Effect, ...], way: Array) -> Array:
-    """The same of the weight of added masses along a unit vector, shape (2,), in space (3,)."""
+def inertia_of_added_masses(masonry: Masonry, effects: tuple[Effect, ...], direction: Array) -> Array:
+    """Forces of the added masses under 1 g along a unit vector, shape (2,), in space (3,), as `applied` gives them."""
     total = np.zeros((len(masonry.free), masonry.freedom.nv))
     for effect in effects:
         arm = place_in_world(masonry, effect) - masonry.centroids[effect.block]
-        total[masonry.free.index(effect.block)] += acting(arm, GRAVITY * effect.mass_added * way)
+        total[masonry.free.index(effect.block)] += wrench(arm, GRAVITY * effect.mass_added * direction)
     return total
 
 
@@ -53,22 +53,22 @@ def pulls_of(masonry: Masonry, ties: Sequence[Anchored]) -> Array:
     (t, free, 6)."""
     pulls = np.zeros((len(ties), len(masonry.free), masonry.freedom.nv))
     for pull, tie in zip(pulls, ties, strict=True):
-        held = np.array(place_in_world(masonry, tie))
-        anchor = tie.anchor_of(held)
-        way = (anchor - held) / np.linalg.norm(anchor - held)
-        for block, point, force in ((tie.block, held, way), (tie.anchor_block, anchor, -way)):
+        point = np.array(place_in_world(masonry, tie))
+        anchor = tie.anchor_of(point)
+        direction = (anchor - point) / np.linalg.norm(anchor - point)
+        for block, end, force in ((tie.block, point, direction), (tie.anchor_block, anchor, -direction)):
             if block is not None and block in masonry.free:
-                pull[masonry.free.index(block)] += acting(point - masonry.centroids[block], force)
+                pull[masonry.free.index(block)] += wrench(end - masonry.centroids[block], force)
     return pulls
 
 
-def acting(arm: Array, force: Array) -> Array:
-    """A force and its moment about a centroid, from where it acts from there [m], see `applied`."""
+def wrench(arm: Array, force: Array) -> Array:
+    """A force and its moment about a centroid, with the arm from there to the point where it acts [m]."""
     turn = np.cross(arm, force) if len(arm) == 3 else [arm[1] * force[0] - arm[0] * force[1]]
     return np.array([*force, *turn])
 
 
-def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
+def with_added_masses(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
     """Mass [kg], centroid [m] and inertia [kg m2] of every block with the masses added to it, shape (blocks, ...)."""
     mass, inertia = (np.array([getattr(block, name) for block in masonry.blocks]) for name in ("mass", "inertia"))
     centroids = np.array(masonry.centroids)
@@ -76,11 +76,11 @@ def laden(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, 
         added = effect.mass_added
         if added > 0:
             i = effect.block
-            apart, total = np.array(place_in_world(masonry, effect)) - centroids[i], mass[i] + added
-            square = float(apart @ apart)
-            second = square * np.eye(3) - np.outer(apart, apart) if masonry.in_space else square
+            arm, total = np.array(place_in_world(masonry, effect)) - centroids[i], mass[i] + added
+            square = float(arm @ arm)
+            second = square * np.eye(3) - np.outer(arm, arm) if masonry.in_space else square
             inertia[i] += mass[i] * added / total * second
-            centroids[i] += added / total * apart
+            centroids[i] += added / total * arm
             mass[i] = total
     return mass, centroids, inertia
 
@@ -137,8 +137,8 @@ def require_placed(name: str, effect: Effect, masonry: Masonry) -> None:
     if effect.on_block:
         _require_on(f"{name}, at", effect.at, masonry.blocks[effect.block])
     require_anchored(name, effect, masonry)
-    held = held_at(effect)
-    if isinstance(effect, Anchored) and np.linalg.norm(held - effect.anchor_of(held)) < 1e-2:
+    point = point_of_effect(effect)
+    if isinstance(effect, Anchored) and np.linalg.norm(point - effect.anchor_of(point)) < 1e-2:
         raise ValueError(f"{name}, anchor = {effect.anchor} m lies at the point that is held; the least is 0.01 m")
 
 
@@ -163,6 +163,6 @@ def _require_on(name: str, point: tuple[float, ...], block: AnyBlock) -> None:
         raise ValueError(f"{name} = {point} m lies {outside:.3g} m outside the block; the valid range is on it")
 
 
-def held_at(effect: Effect) -> Array:
+def point_of_effect(effect: Effect) -> Array:
     """The point where an effect acts, at rest [m], shape (2,) or (3,)."""
     return np.array(effect.at)

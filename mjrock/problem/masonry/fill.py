@@ -40,7 +40,7 @@ class Bearing(NamedTuple):
     ends: Array
     length: float
 
-    def at(self, x: float) -> tuple[float, float]:
+    def point_at(self, x: float) -> tuple[float, float]:
         """Its point at an x [m]."""
         return x, float(np.interp(x, *self.ends.T))
 
@@ -108,9 +108,9 @@ class Fill:
             effects.append(EarthLoad(column * wide, block=face.name, at=point, **shown))  # type: ignore[arg-type]
             borne = self.passive * column * abs(high - z)
             if borne > 0:
-                way = 1.0 if high < z else -1.0  # out of the masonry, sideways
+                sense = 1.0 if high < z else -1.0  # out of the masonry, sideways
                 middle = face.ends.mean(axis=0)
-                anchor = middle[0] - way * ANCHORED, middle[1]
+                anchor = middle[0] - sense * ANCHORED, middle[1]
                 pull = {"strength": borne, "at": tuple(middle), "anchor": anchor, "block": face.name}
                 effects.append(EarthTie(stiffness=AS_RIGID, **pull))
         return tuple(effects)
@@ -166,9 +166,9 @@ class Fill:
             if share > 0:
                 down = [left, right] if high > low else [at, at]
                 up = np.interp(down, [low, high], [at - half, at + half]) if high > low else [at, at]
-                drawn = *map(face.at, down), (float(up[1]), self.top), (float(up[0]), self.top)
+                drawn = *map(face.point_at, down), (float(up[1]), self.top), (float(up[0]), self.top)
                 shown = {"stands_for": None if loads else axle, "drawn": drawn}
-                point = face.at(0.5 * (down[0] + down[1]))
+                point = face.point_at(0.5 * (down[0] + down[1]))
                 loads.append(EarthLoad(axle.force * share, block=face.name, at=point, **shown))  # type: ignore[arg-type]
         return loads
 
@@ -187,20 +187,20 @@ class Fill:
         if masonry.in_space:
             raise ValueError("masonry is in space; a fill takes masonry in the plane")
         ends = [pair for joint in masonry.joints for pair in zip((joint.below, joint.above), joint.sides, strict=True)]
-        met, found = set(ends), list[Bearing]()
+        met, faces = set(ends), list[Bearing]()
         for number in masonry.free:
             block = masonry.polygons[number]
             for k, side in enumerate(block.sides):
                 if side.normal[1] > LOOKS_UP and (number, k) not in met:
                     part = block.parts[side.parts[0]]
                     assert isinstance(part, Polygon)  # of masonry in the plane
-                    found.append(Bearing(masonry.names[number], side.corners[::-1], part.length))
-        if not found:
+                    faces.append(Bearing(masonry.names[number], side.corners[::-1], part.length))
+        if not faces:
             raise ValueError("masonry has no free face that looks upwards, on which a fill could rest")
-        highest = max(float(face.ends[:, 1].max()) for face in found)
+        highest = max(float(face.ends[:, 1].max()) for face in faces)
         if not self.top > highest:
             raise ValueError(f"top of the fill = {self.top:g} m is not above {highest:g} m, the highest face")
-        return sorted(found, key=lambda face: float(face.ends[0, 0]))
+        return sorted(faces, key=lambda face: float(face.ends[0, 0]))
 
 
 @dataclass(frozen=True)

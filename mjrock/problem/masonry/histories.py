@@ -31,8 +31,10 @@ FARTHEST_SUPPORT = 100.0
 STEEPEST = math.pi
 """Largest angle of a table [rad]."""
 Times = tuple[Annotated[float, Within(-LATEST_TIME, LATEST_TIME, "s")], ...]
-Way = tuple[Annotated[float, Within(-FARTHEST_SUPPORT, FARTHEST_SUPPORT, "m")], ...]
-OfSupports = Mapping[str, tuple[Times, Way, Way] | tuple[Times, Way, Way, Way]]
+Displacements = tuple[Annotated[float, Within(-FARTHEST_SUPPORT, FARTHEST_SUPPORT, "m")], ...]
+OfSupports = Mapping[
+    str, tuple[Times, Displacements, Displacements] | tuple[Times, Displacements, Displacements, Displacements]
+]
 Tilt = tuple[Times, tuple[Annotated[float, Within(-STEEPEST, STEEPEST, "rad")], ...]]
 """Histories of supports and of a table, as a case takes them."""
 
@@ -117,22 +119,23 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
     require_kind("supports", given, Mapping)
     fixed = [masonry.names[i] for i, block in enumerate(masonry.blocks) if block.fixed]
     labels = ("t", "dx", "dy", "dz") if masonry.in_space else ("t", "dx", "dz")
-    wanted, supports = ", ".join(labels), []
+    expected, supports = ", ".join(labels), []
     for name, histories in given.items():
         if name not in fixed:
             raise ValueError(f"supports: {shown(name)} is not a fixed block; the valid ones are {', '.join(fixed)}")
         if not isinstance(histories, list | tuple) or len(histories) != len(labels):
             where = "in space" if masonry.in_space else "in the plane"
-            raise TypeError(f"supports, {name} = {shown(histories)} is not ({wanted}), which masonry {where} takes")
+            raise TypeError(f"supports, {name} = {shown(histories)} is not ({expected}), which masonry {where} takes")
         pairs = zip(labels, histories, strict=True)
         rows = {label: require_row(f"supports, {name}, {label}", values, "number") for label, values in pairs}
         require_as_many(f"supports, {name}", rows)
         if not (np.diff(rows["t"]) > 0).all():
             raise ValueError(f"supports, {name}: t does not increase")
-        far = max(float(np.abs(rows[label]).max()) for label in labels[1:])
-        if far > FARTHEST_SUPPORT:
+        largest = max(float(np.abs(rows[label]).max()) for label in labels[1:])
+        if largest > FARTHEST_SUPPORT:
             raise ValueError(
-                f"supports, {name}: a displacement of {far:g} m is outside the valid range to {FARTHEST_SUPPORT:g} m"
+                f"supports, {name}: a displacement of {largest:g} m is outside the valid range to "
+                f"{FARTHEST_SUPPORT:g} m"
             )
         supports.append(Support(name, **{label: tuple(row.tolist()) for label, row in rows.items()}))
     return tuple(supports)

@@ -15,7 +15,7 @@ from ...quantities import Array, Flags, Integers
 from ..damping.contacts import contact_lines
 from .blocks.compound import AnyBlock
 from .blocks.joints import LEVEL, Joint
-from .blocks.joints_in_space import SpaceJoint, axes_across
+from .blocks.joints_in_space import SpaceJoint, tangent_axes
 from .blocks.polygon import Polygon
 
 UNRESISTED = 1e-12
@@ -49,8 +49,8 @@ class Lines(NamedTuple):
         return np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
 
     @property
-    def across(self) -> tuple[Array, ...]:
-        """Unit vectors along the faces: in the plane `along`; in space two, across one another, shape (m, 3) each.
+    def tangents(self) -> tuple[Array, ...]:
+        """Unit vectors along the faces: in the plane `along`; in space two, perpendicular to each other, (m, 3).
 
         Opposite normals have opposite vectors, so that all points of a joint count its slip in the same directions.
         """
@@ -58,7 +58,7 @@ class Lines(NamedTuple):
             return (self.along,)
         leading = np.abs(self.normal).argmax(axis=1)
         signs = np.sign(self.normal[np.arange(len(leading)), leading])[:, None]
-        pairs = signs[:, None] * axes_across(signs * self.normal)
+        pairs = signs[:, None] * tangent_axes(signs * self.normal)
         return pairs[:, 0], pairs[:, 1]
 
 
@@ -69,13 +69,13 @@ class Spot(NamedTuple):
         at: where [m].
         stiffness: of its line [N/m].
         overhangs: whether its corner or edge is that of the block below.
-        on_one: whether it lies on an edge of one face alone. No place of the plane does.
+        on_one_edge: whether it lies on an edge of one face alone. No place of the plane does.
     """
 
     at: Array
     stiffness: float
     overhangs: bool
-    on_one: bool = False
+    on_one_edge: bool = False
 
 
 def lines_of(
@@ -100,7 +100,7 @@ def lines_of(
     rows, at, normal, k = [], [], [], []
     divided: dict[tuple[bytes, int, bool], tuple[Array, Array]] = {}
     centroids, fixed = np.array([block.centroid for block in blocks]), np.array([block.fixed for block in blocks])
-    far = np.linalg.norm((centroids - centroids[~fixed].mean(axis=0))[:, :-1], axis=1).tolist()
+    distances = np.linalg.norm((centroids - centroids[~fixed].mean(axis=0))[:, :-1], axis=1).tolist()
     counts = np.broadcast_to(points, len(joints)).tolist()
     for number, (joint, count) in enumerate(zip(joints, counts, strict=True)):
         k_joint, exact = k_n[number], bonded is not None and bonded[number]
@@ -115,11 +115,11 @@ def lines_of(
             spots = _on_face(joint, faces, flat, k_joint * areas)
         below, above, upwards = blocks[joint.below], blocks[joint.above], joint.normal
         vertical = mirrored and abs(upwards[-1]) < LEVEL and not below.fixed
-        beside = _outer(far[joint.above], far[joint.below]) if vertical else ()
+        beside = _outer(distances[joint.above], distances[joint.below]) if vertical else ()
         alike = _have_corners(below, spots) == _have_corners(above, spots) if beside else ()
         for i, spot in enumerate(spots):
             turns: tuple[bool, ...] = (spot.overhangs and not below.fixed,)
-            if beside and not spot.on_one and alike[i]:
+            if beside and not spot.on_one_edge and alike[i]:
                 turns = beside
             for turned in turns:
                 rows.append((number, *((joint.below, joint.above) if turned else (joint.above, joint.below))))
@@ -161,10 +161,10 @@ def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -
     below, above = ((face - joint.outline[0]) @ joint.axes.T for face in faces)
     on_below, on_above = within(below, flat) < EDGE_WITHIN, within(above[::-1], flat) < EDGE_WITHIN
     places = joint.outline[0] + flat @ joint.axes
-    apart = np.abs(joint.outline - places[:, None]).max(axis=2)
-    at_corner = (apart.min(axis=1) < 1e-9) & np.array(joint.corners)[apart.argmin(axis=1)]
-    overhangs, on_one = (on_below & ~on_above) | at_corner, on_below != on_above
-    return [Spot(*spot) for spot in zip(places, k, overhangs.tolist(), on_one.tolist(), strict=True)]
+    distances = np.abs(joint.outline - places[:, None]).max(axis=2)
+    at_corner = (distances.min(axis=1) < 1e-9) & np.array(joint.corners)[distances.argmin(axis=1)]
+    overhangs, on_one_edge = (on_below & ~on_above) | at_corner, on_below != on_above
+    return [Spot(*spot) for spot in zip(places, k, overhangs.tolist(), on_one_edge.tolist(), strict=True)]
 
 
 def rates(blocks: Sequence[AnyBlock], lines: Lines, directions: Array) -> csr_array:
@@ -187,10 +187,10 @@ def free_numbers(blocks: Sequence[AnyBlock]) -> Integers:
 def mean_slip_rates(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> csr_array:
     """Mean rates at which the lines of each joint slide for unit velocities, shape (joints, 3 bodies).
 
-    In space a joint has three: along the two directions of `Lines.across`, and the rate at which it twists about its
+    In space a joint has three: along the two directions of `Lines.tangents`, and the rate at which it twists about its
     normal [rad/s]. The shape is (3 joints, 6 bodies), the first of all joints before the second.
     """
-    parts = [averaged(rates(blocks, lines, direction), lines.joint, joints) for direction in lines.across]
+    parts = [averaged(rates(blocks, lines, direction), lines.joint, joints) for direction in lines.tangents]
     if lines.normal.shape[1] == 3:
         number = free_numbers(blocks)
         spins = lines.normal[:, None] * np.array([[1.0], [-1.0]])
@@ -215,13 +215,13 @@ def lowest_frequency(
     axes = csr_array(eye_array(len(masses))) if axes is None else axes
     moves = rates(blocks, lines, lines.normal), mean_slip_rates(blocks, lines, len(friction))
     opening, sliding = (csr_array(part @ axes) for part in moves)
-    held = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
-    grip, stiffness = sliding[np.tile(held, sliding.shape[0] // len(held))], sprung(opening, lines.k)
+    sticking = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
+    grip, stiffness = sliding[np.tile(sticking, sliding.shape[0] // len(sticking))], sprung(opening, lines.k)
     square = lowest_square(stiffness, masses, grip, UNRESISTED)
     if square == 0:
         springs = np.where(np.isfinite(along) & (friction > 0)[lines.joint], along, 0.0)
-        for way in lines.across:
-            stiffness = stiffness + sprung(csr_array(rates(blocks, lines, way) @ axes), springs)
+        for tangent in lines.tangents:
+            stiffness = stiffness + sprung(csr_array(rates(blocks, lines, tangent) @ axes), springs)
         square = lowest_square(stiffness, masses, grip[:0], UNRESISTED)
     return math.sqrt(square)
 

@@ -586,9 +586,9 @@ class Masonry(Constructors, NotebookPicture):
         wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)
         tries = [(wider, wider)] + ([(FINE_TOLERANCE, self.reach)] if self.tolerance > FINE_TOLERANCE else [])
         for tolerance, gap in tries:
-            apart = not_joined(self.blocks, self.joints, gap)
+            distance = not_joined(self.blocks, self.joints, gap)
             with suppress(OverlapError):
-                found = self._joints_with(tolerance, gap, apart)
+                found = self._joints_with(tolerance, gap, distance)
                 if odd := nearly([joint.name for joint in found], gap, self.tolerance):
                     warn_of(odd, Implausible)
         return self

@@ -75,10 +75,10 @@ def _edge(side: Side, joint: Joint, sense: float) -> Face:
     return Face.in_plane(joint.middle, joint.along, (low, high), sense)
 
 
-def travels(faces: tuple[Face, Face], ways: Array) -> Array:
+def travels(faces: tuple[Face, Face], directions: Array) -> Array:
     """How far the face above can slide along unit vectors until it has left the face below [m], shape (n,).
 
     The two faces then touch along a line square to the way at most.
     """
     below, above = faces
-    return np.asarray((below.corners @ ways.T).max(axis=0) - (above.corners @ ways.T).min(axis=0))
+    return np.asarray((below.corners @ directions.T).max(axis=0) - (above.corners @ directions.T).min(axis=0))

@@ -29,7 +29,7 @@ from .effect import Anchored, Effect, require_only
 from .effects import EFFECT_KINDS, AddedMass, Carrying, Load, SideStop, constant_forces_of
 from .plausibility import doubts
 from .rest_geometry import WallRestGeometry
-from .restoring_moment import Restoring, TiePull, of_force, taken, tie_energy, tie_limits, yielded
+from .restoring_moment import Restoring, TiePull, dissipated_by_ties, of_force, tie_energy, tie_limits, yielded
 
 
 @dataclass(frozen=True)
@@ -112,11 +112,11 @@ class Case(Carrying):
             require_within(f"effects[{i}], height of the {type(effect).__name__}", effect.height, 0.0, top, "m")
             if isinstance(effect, Load):
                 require_within(f"effects[{i}], offset of the Load", effect.offset, inner, b, "m")
-        for side, way in ((1.0, "outwards"), (-1.0, "inwards")):
-            held = side > 0 and self.overturning_rotation > 0  # by ties
-            if (side > 0 or not self.side_stop) and self.restoring.towards(side).P <= 0 and not held:
+        for side, sense in ((1.0, "outwards"), (-1.0, "inwards")):
+            restores = side > 0 and self.overturning_rotation > 0  # by ties
+            if (side > 0 or not self.side_stop) and self.restoring.towards(side).P <= 0 and not restores:
                 raise ValueError(
-                    f"the loads and thrusts overturn the wall {way} as it stands: their moment about the toe "
+                    f"the loads and thrusts overturn the wall {sense} as it stands: their moment about the toe "
                     f"and that of the weight is {self.restoring.towards(side).P:.4g} N m, and no tie makes up "
                     "for it; the valid range is above 0: lower the thrust, or give a "
                     f"{'tie that can hold it' if side > 0 else 'side stop'}"
@@ -220,8 +220,8 @@ class Case(Carrying):
     def _forces(self, level: float, half_base: float) -> list[Restoring]:
         """Restoring moments of loads and thrusts about two edges at a height and a distance from the middle [m]."""
         return [
-            of_force(force.offset, force.height - level, across, -up, half_base)
-            for force, (across, _, up) in constant_forces_of(self.effects).values()
+            of_force(force.offset, force.height - level, offset, -up, half_base)
+            for force, (offset, _, up) in constant_forces_of(self.effects).values()
         ]
 
     @cached_property
@@ -285,14 +285,14 @@ class Case(Carrying):
     def peak_energies(self, peaks: Array) -> tuple[Array, Array]:
         """Energy at the rotation peaks of a base at rest [J], shape (n,): on leaving each, and on the way to it.
 
-        The second is larger by what ties have taken on the way there. Peaks have their sign [rad], shape (n,).
+        The second is larger by what ties have dissipated up to there. Peaks have their sign [rad], shape (n,).
         """
         energy = np.asarray(self.restoring.energy(peaks), dtype=float)
         if not self.pulls:
             return energy, energy
         plastic = yielded(self.pulls, peaks)
         energy = energy + tie_energy(self.pulls, peaks, plastic)
-        return energy, energy + np.diff(taken(self.pulls, plastic), prepend=0.0)
+        return energy, energy + np.diff(dissipated_by_ties(self.pulls, plastic), prepend=0.0)
 
     @cached_property
     def overturning_rotation(self) -> float:
@@ -305,17 +305,17 @@ class Case(Carrying):
         if not self.pulls:
             return max(moment.alpha, 0.0)
 
-        def held(phi: Array) -> Flags:
+        def restores(phi: Array) -> Flags:
             return np.asarray(moment.at(phi) + sum(pull.moment(phi) for pull in self.pulls) > 0)
 
         phi = np.linspace(0.0, ON_ITS_FACE, 2001)
-        back = 1 + np.flatnonzero(held(phi[1:]))
+        back = 1 + np.flatnonzero(restores(phi[1:]))
         if not back.size or back[-1] == len(phi) - 1:
             return float(phi[back[-1]]) if back.size else 0.0
         low, high = (float(phi[back[-1] + i]) for i in (0, 1))
         for _ in range(50):
             middle = 0.5 * (low + high)
-            low, high = (middle, high) if held(np.array([middle]))[0] else (low, middle)
+            low, high = (middle, high) if restores(np.array([middle]))[0] else (low, middle)
         return low
 
     def returns_from(self, theta: Array) -> Flags:

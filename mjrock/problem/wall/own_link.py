@@ -29,11 +29,11 @@ class OwnLinkLaw(UserLaw):
         remembers = bool(cls.memory)
 
         def answer(row: Any, u: float, rate: float) -> None:
-            held = energy(row, u) if remembers else 0.0
+            before = energy(row, u) if remembers else 0.0
             remember(row, u)
             row.stress_ = force(row, u, 0.0)
             row.energy_ = energy(row, u)
-            row.taken_ = held - row.energy_ if remembers else 0.0
+            row.dissipated_ = before - row.energy_ if remembers else 0.0
             row.damping_ = force(row, u, rate) - row.stress_
 
         return answer
@@ -99,14 +99,14 @@ class AppliedLink(AppliedLaw):
         return tuple(rows)
 
     @cached_property
-    def ways(self) -> tuple[float, ...]:
+    def elongations(self) -> tuple[float, ...]:
         """Elongations at which it is checked [m]."""
         return (*(-self.stroke * STROKES[::-1]).tolist(), 0.0, *(self.stroke * STROKES).tolist())
 
     @cached_property
     def stiffest(self) -> tuple[float, float]:
         """The largest stiffness [N/m] and damping coefficient [N s/m] within the stroke."""
-        states = [(u, values) for values in self.histories for u in self.ways]
+        states = [(u, values) for values in self.histories for u in self.elongations]
         k = max(self.slope(u, values) for u, values in states)
         c = max(abs(self.answer(u, rate, values.copy()).damping) / rate for u, values in states for rate in RATES)
         return max(k, 0.0), c
@@ -116,7 +116,7 @@ class AppliedLink(AppliedLaw):
 def require_lawful_link(law: AppliedLink) -> None:
     """Raise an error for a law that fails within the stroke, whose rate drives what it should damp, or whose energy is
     not the integral of its force."""
-    for u in law.ways:
+    for u in law.elongations:
         for rate in (*RATES, *(-rate for rate in RATES)):
             if (damping := law.answer(u, rate).damping) * rate < 0:
                 raise ValueError(

@@ -110,7 +110,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
 
     Args:
         motion, duration: the record and the duration.
-        called: what is shaken.
+        label: what is shaken.
         start: acceleration over g at which it starts to move from rest [-], infinite where that is not known.
     """
     if motion is None:
@@ -133,9 +133,9 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
 
 def _of_effects(case: Any) -> list[str]:
     def room(link: Anchored) -> tuple[float, float]:
-        b, far = case.block.b, max(case.restoring.outer.alpha, case.wall.alpha)
+        b, opening = case.block.b, max(case.restoring.outer.alpha, case.wall.alpha)
         pull = TiePull.from_tie(link, case.block)._replace(reach=link.span)
-        return 2 * b, float(pulled(pull, far, 1.0)[0])
+        return 2 * b, float(pulled(pull, opening, 1.0)[0])
 
     return of_effects(case.effects, Whole("wall", "the wall", case.block.mass, LEAST_OF_WALL), room)
 
@@ -144,14 +144,14 @@ class Whole(NamedTuple):
     """What effects act on.
 
     Args:
-        called: what it is called.
-        held: what a tie holds of it.
+        label: its name in messages.
+        part: what of it a tie is anchored to, in messages.
         mass: its mass without what is added [kg].
         least: share of its weight or mass below which a force or a mass is taken for one in kN or t [-].
     """
 
-    called: str
-    held: str
+    label: str
+    part: str
     mass: float
     least: float = NEGLIGIBLE_SHARE
 
@@ -173,7 +173,7 @@ def of_effects(effects: Sequence[Effect], whole: Whole, room: Room) -> list[str]
                 found.append(_against_weight(name, "force", effect.force, whole, "N"))
         elif isinstance(effect, AddedMass) and 0 < effect.mass < whole.least * whole.mass:
             found.append(
-                f"{name}: mass = {effect.mass:g} kg, that of the {whole.called} {whole.mass:.3g} kg: is it in t?"
+                f"{name}: mass = {effect.mass:g} kg, that of the {whole.label} {whole.mass:.3g} kg: is it in t?"
             )
         elif isinstance(effect, Anchored):
             found += filter(None, (of(name, effect, whole, room) for of in (_of_dashpot, _of_spring)))
@@ -187,8 +187,8 @@ def _of_free_part(case: Any) -> list[str]:
         return []
     levels, thicknesses = zip(*(wall.profile or ((0.0, 2 * wall.b),)), strict=True)
     thickness, free = float(np.interp(highest, levels, thicknesses)), 2 * wall.h - highest
-    held = case.restoring.outer.P + moment_at_strength(case.pulls)
-    part, whole = thickness / free, held / (wall.weight * wall.centroid_height)
+    moment = case.restoring.outer.P + moment_at_strength(case.pulls)
+    part, whole = thickness / free, moment / (wall.weight * wall.centroid_height)
     if part >= whole:
         return []
     starts = f"at {whole:.3g} g, its ties at their strength" if whole < math.inf else "never, as its ties do not yield"
@@ -211,7 +211,7 @@ def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     thickness, opens = room(link)
     if math.isfinite(law.strength) and law.strength / law.k > thickness:
         return (
-            f"{name} yields at an elongation of {law.strength / law.k:.3g} m, and {whole.held} is {thickness:g} m "
+            f"{name} yields at an elongation of {law.strength / law.k:.3g} m, and {whole.part} is {thickness:g} m "
             "thick: is its stiffness in N/m?"
         )
     if math.isfinite(law.strength) and law.strength > EXCESSIVE * weight:
@@ -219,7 +219,7 @@ def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     for what, length in (("slack", law.reach - link.span), ("ultimate", law.ultimate)):
         if math.inf > length > opens > 0:
             return (
-                f"{name}: {what} = {length:g} m, and where it is held the {whole.called} opens by {opens:.3g} m until "
+                f"{name}: {what} = {length:g} m, and where it is held the {whole.label} opens by {opens:.3g} m until "
                 f"it overturns: is the {what} in m?"
             )
     return ""
@@ -235,10 +235,10 @@ def _of_dashpot(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     if not link.law.c > 0:
         dashpot, unit = "its dashpot", "N and m/s"
     return (
-        f"{name}: {dashpot} bears {force:.3g} N at {speed:.2g} m/s, at which the {whole.called} falls, "
+        f"{name}: {dashpot} bears {force:.3g} N at {speed:.2g} m/s, at which the {whole.label} falls, "
         f"and it weighs {weight:.3g} N: is it in {unit}?"
     )
 
 
 def _against_weight(name: str, what: str, value: float, whole: Whole, unit: str) -> str:
-    return f"{name}: {what} = {value:g} N, and the {whole.called} weighs {whole.mass * GRAVITY:.3g} N: is it in {unit}?"
+    return f"{name}: {what} = {value:g} N, and the {whole.label} weighs {whole.mass * GRAVITY:.3g} N: is it in {unit}?"

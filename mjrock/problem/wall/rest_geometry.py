@@ -18,8 +18,8 @@ from .block import Block
 
 ROUND = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 13))
 """Heights between which a round opening has straight sides, over its height [-]."""
-NOTHING_LEFT = 1e-9
-"""Width of what is left of a wall beside an opening, over the length of the wall, that is nothing [-]."""
+NARROWEST_PIER = 1e-9
+"""Width beside an opening, over the length of the wall, up to which nothing of the wall is left there [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,12 +104,13 @@ class Face(NamedTuple):
     Args:
         corners: in the plane its two ends [m], shape (2, 2), in space counterclockwise from outside, shape (n, 3).
         normal: unit vector out of its block, shape (d,).
-        ways: unit vectors out of the face, square to its edges in its plane, in the plane along it, shape (edges, d).
+        edge_normals: unit vectors out of the face in its plane, perpendicular to its edges; in the plane both
+            directions along the edge, shape (edges, d).
     """
 
     corners: Array
     normal: Array
-    ways: Array
+    edge_normals: Array
 
     @classmethod
     def in_plane(cls, origin: Array, along: Array, ends: tuple[float, float], sense: float) -> Face:
@@ -125,9 +126,9 @@ class Face(NamedTuple):
         for count in np.unique(counts):
             which = np.flatnonzero(counts == count).tolist()
             corners, normals = (np.array([getattr(sides[i], name) for i in which]) for name in ("corners", "normal"))
-            ways = cross_in_space(np.roll(corners, -1, axis=1) - corners, normals[:, None])
-            ways /= np.linalg.norm(ways, axis=2)[..., None]
-            for i, own in zip(which, ways, strict=True):
+            edge_normals = cross_in_space(np.roll(corners, -1, axis=1) - corners, normals[:, None])
+            edge_normals /= np.linalg.norm(edge_normals, axis=2)[..., None]
+            for i, own in zip(which, edge_normals, strict=True):
                 faces[i] = cls(sides[i].corners, sides[i].normal, own)
         return [faces[i] for i in range(len(sides))]
 
@@ -259,8 +260,8 @@ class WallRestGeometry:
         if self.stop_top is not None:
             reaches.append((down, (-self.stop_top, 0.0), (-2 * self.wall.h, 0.0)))
         return tuple(
-            (Face.in_plane(foot, way, below, 1.0), Face.in_plane(foot, way, above, -1.0))
-            for way, below, above in reaches
+            (Face.in_plane(foot, direction, below, 1.0), Face.in_plane(foot, direction, above, -1.0))
+            for direction, below, above in reaches
         )
 
 
@@ -292,11 +293,11 @@ def _beside_openings(wall: Block, low: float, high: float) -> list[tuple[Array, 
     left, pieces = -half, list[tuple[Array, Array]]()
     for place, opening in sorted(zip(front.places, front.openings, strict=True), key=lambda pair: pair[0]):
         if opening.sill < middle < opening.head:
-            across = 0.5 * (opening.across(z) if opening.round else np.full(2, opening.width))
-            pieces.append((left, np.clip(place - across, left, half)))
-            left = np.clip(place + across, left, half)
+            widths = 0.5 * (opening.across(z) if opening.round else np.full(2, opening.width))
+            pieces.append((left, np.clip(place - widths, left, half)))
+            left = np.clip(place + widths, left, half)
     pieces.append((left, half))
-    return [piece for piece in pieces if (piece[1] - piece[0]).max() > NOTHING_LEFT * wall.length]
+    return [piece for piece in pieces if (piece[1] - piece[0]).max() > NARROWEST_PIER * wall.length]
 
 
 def _slab(

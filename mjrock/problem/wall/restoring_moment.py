@@ -41,8 +41,8 @@ class Moment(NamedTuple):
 
     def energy(self, phi: Real) -> Real:
         """The work that a rotation phi >= 0 takes [J]."""
-        taken: Real = self.P * np.sin(phi) - 2 * self.Q * np.sin(0.5 * phi) ** 2
-        return taken
+        work: Real = self.P * np.sin(phi) - 2 * self.Q * np.sin(0.5 * phi) ** 2
+        return work
 
     def rotation_at(self, energy: float) -> float:
         """The rotation in [0, alpha] that takes `energy` [J].
@@ -200,8 +200,8 @@ def tie_energy(pulls: Sequence[TiePull], theta: Array, plastic: Array) -> Array:
     return energy
 
 
-def taken(pulls: Sequence[TiePull], plastic: Array) -> Array:
-    """Energy that all ties have taken by yielding and breaking so far [J], shape (n,), for plastic elongations (n,
+def dissipated_by_ties(pulls: Sequence[TiePull], plastic: Array) -> Array:
+    """Energy that all ties have dissipated by yielding and breaking so far [J], shape (n,), for plastic elongations (n,
     ties)."""
     total = np.zeros(len(plastic))
     for pull, gone in zip(pulls, plastic.T, strict=True):

@@ -246,7 +246,7 @@ class Front(NamedTuple):
             return np.full(np.shape(z), self.length)
         return np.interp(z, [self.eaves, self.height], [self.length, self.gable.top])
 
-    def left(self, z: Array) -> Array:
+    def net_length(self, z: Array) -> Array:
         """Length of what is left beside the openings at heights above the base [m], shape (n,)."""
         gone = [opening.across(z) for opening in self.openings]
         return np.asarray(self.long(z) - sum(gone, np.zeros(np.shape(z))))
@@ -276,12 +276,12 @@ class Front(NamedTuple):
         ends = [z for opening in self.openings for z in (opening.sill + edge, opening.head - edge)]
         places = {*ends, *np.linspace(min(ends), max(ends), HEIGHTS_TRIED).tolist()} if ends else set()
         for z in sorted(places):
-            at = np.array(z)
-            across, length = sum(float(opening.across(at)) for opening in self.openings), float(self.long(at))
-            if not across < length * (1 - 1e-9):
+            height = np.array(z)
+            width, length = sum(float(opening.across(height)) for opening in self.openings), float(self.long(height))
+            if not width < length * (1 - 1e-9):
                 where = f"at a height of {z:.4g} m" if z > 2 * edge else "at the base"
                 raise ValueError(
-                    f"the openings {where} are {across:g} m wide together; the valid range is less than "
+                    f"the openings {where} are {width:g} m wide together; the valid range is less than "
                     f"{length:g} m, the length of the wall there"
                 )
 
@@ -301,11 +301,11 @@ def moments(section: Section, front: Front, between: tuple[float, float] = (0.0,
             angle = 0.5 * math.pi * NODES
             share, weight = 0.5 * (1 + np.sin(angle)), WEIGHTS * 0.25 * math.pi * np.cos(angle)
             z = low + (high - low) * share
-            weight = weight * front.left(z)
+            weight = weight * front.net_length(z)
         else:
             share, weight = np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6
             z = low + (high - low) * share
-            weight = weight * front.left(np.array(0.5 * (low + high)))
+            weight = weight * front.net_length(np.array(0.5 * (low + high)))
         faces = section.across(ends[0] + (ends[1] - ends[0]) * share)
         total += (high - low) * np.array([weight @ term for term in _terms(z, *faces)])
     return Moments(*total.tolist())

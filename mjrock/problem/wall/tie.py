@@ -237,8 +237,8 @@ def strengths_of_bar(
     around = a + b + 2 * thickness
     punched = number * around
     if spacing is not None:
-        apart = require_within("spacing of the ties", spacing, a, 1000.0, "m")
-        punched = min(punched, around + (number - 1) * apart)
+        spacing = require_within("spacing of the ties", spacing, a, 1000.0, "m")
+        punched = min(punched, around + (number - 1) * spacing)
     bar, bearing = number * yield_stress * area_of_bar(diameter), number * compressive_strength * a * b
     strengths = bar, shear_strength * 2 * thickness * punched, bearing
     return dict(zip(GOVERNING, strengths, strict=False))

@@ -23,11 +23,11 @@ from ...quantities import Array, keep, keep_declared, require_real
 
 OfUser = TypeVar("OfUser")
 
-ANSWERS = ("stress_", "energy_", "damping_", "lost_", "taken_")
+ANSWERS = ("stress_", "energy_", "damping_", "lost_", "dissipated_")
 """What a law has answered at the last pose, in this order in its row: its push or pull, energy, what its dashpot adds
 to that, the share that it has lost [-], and by how much its energy fell as its memory changed there. A joint has [Pa]
 and [J/m2], a link [N] and [J]."""
-OF_STRESS, OF_ENERGY, OF_DAMPING, OF_LOST, OF_TAKEN = range(len(ANSWERS))
+OF_STRESS, OF_ENERGY, OF_DAMPING, OF_LOST, OF_DISSIPATED = range(len(ANSWERS))
 ROOM = 24
 """Numbers of a row."""
 INTEGRAL = 1e-3
@@ -221,7 +221,7 @@ class AppliedLaw:
     def slope(self, u: float, values: Array | None = None) -> float:
         """Stiffness at a closing or elongation, of a row whose memory stays as it is."""
         off = 1e-4 * max(abs(u), self.shortest)
-        ends = [self.answer(u + way, 0.0, None if values is None else values.copy()).stress for way in (off, -off)]
+        ends = [self.answer(u + sign, 0.0, None if values is None else values.copy()).stress for sign in (off, -off)]
         return (ends[0] - ends[1]) / (2 * off)
 
 

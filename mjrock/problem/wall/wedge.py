@@ -109,8 +109,8 @@ class Wedge(CombinedEffect):
         """
         outline = tuple((x, z) for x, z in corners)
         inner, outer = (
-            WedgeMass(mass / 2, height, offset + way * radius, wedge=self, corners=outline, first=way < 0)
-            for way in (-1, 1)
+            WedgeMass(mass / 2, height, offset + sense * radius, wedge=self, corners=outline, first=sense < 0)
+            for sense in (-1, 1)
         )
         return inner, outer
 
@@ -230,8 +230,8 @@ class Corner:
     @property
     def multiplier(self) -> float:
         """alpha_0 along the diagonal [-], with ties slack but for their prestress."""
-        wall, held = self.case.wall, sum(float(pull.moment(np.zeros(1))[0]) for pull in self.case.pulls)
-        return (self.case.restoring.outer.P + held) / (wall.weight * wall.centroid_height)
+        wall, moment = self.case.wall, sum(float(pull.moment(np.zeros(1))[0]) for pull in self.case.pulls)
+        return (self.case.restoring.outer.P + moment) / (wall.weight * wall.centroid_height)
 
     @cached_property
     def case(self) -> Case:

@@ -16,7 +16,7 @@ from ...geometry.frames import PLANE, SPACE
 from ...geometry.poses import at_rest, moved
 from ...linear import rates_of
 from ...problem.masonry.case import MasonryCase
-from ...problem.masonry.effects import applied, dragged, pulls_of
+from ...problem.masonry.effects import applied, inertia_of_added_masses, pulls_of
 from ...problem.masonry.limit.collapse import Collapse, LimitLoads, UnbalancedError, limit_of, pushed
 from ...problem.masonry.limit.pose import Moves, gaps_of, posed, spans_in
 from ...problem.masonry.limit.statics import MOVES, Pulls, falling
@@ -169,7 +169,7 @@ def collapse_multiplier(
         growing = posed(still, pose, growing)[1] if isinstance(growing, tuple) else growing
     none = direction is None and angle is None
     push = np.zeros(3 if masonry.in_space else 2) if none else horizontal(masonry, direction, angle)
-    grown = _forces(masonry, growing) + pushed(masonry, push) + dragged(masonry, given, push)
+    grown = _forces(masonry, growing) + pushed(masonry, push) + inertia_of_added_masses(masonry, given, push)
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
     links = tuple(link_effects(given).values())
@@ -209,12 +209,12 @@ def _require_alone(**given: object) -> None:
 
 def overturned(case: Case, direction: object, loads: object) -> Collapse:
     """The factor on the forces that grow at which a wall at rest overturns, see `collapse_multiplier`."""
-    way = 0.0 if direction is None else require_real("direction", direction)
-    if way not in (-1.0, 0.0, 1.0) or way == direction == 0:
-        raise ValueError(f"direction = {way:g} is not a direction; the valid ones are 1, -1 and None")
+    sense = 0.0 if direction is None else require_real("direction", direction)
+    if sense not in (-1.0, 0.0, 1.0) or sense == direction == 0:
+        raise ValueError(f"direction = {sense:g} is not a direction; the valid ones are 1, -1 and None")
     grown = required_effects("loads", () if loads is None else loads, GROWING, "Thrust, Load or a sequence of them")
     wall, top = case.wall, 2 * case.wall.h * (1 + 1e-12)
-    forces = [(0.0, wall.centroid_height, way * wall.weight, 0.0)]
+    forces = [(0.0, wall.centroid_height, sense * wall.weight, 0.0)]
     for i, load in enumerate(grown):
         require_within(f"loads[{i}], height", load.height, 0.0, top, "m")
         across, _, up = load.force_vector
@@ -226,9 +226,9 @@ def overturned(case: Case, direction: object, loads: object) -> Collapse:
         _warn_of_other_way(case, forces, found.factor)
     acting: dict[str, Any] = {"loads": grown, "effects": case.effects, "case": case}
     if found.factor == math.inf:
-        return Collapse(math.inf, np.array([way, 0.0]), (), np.zeros((1, 3)), **acting)
+        return Collapse(math.inf, np.array([sense, 0.0]), (), np.zeros((1, 3)), **acting)
     motion = found.side * wall.weight / found.moment * wall.turning(0.0, found.side)
-    return Collapse(found.factor, np.array([way, 0.0]), ("wall",), np.atleast_2d(motion), **acting)
+    return Collapse(found.factor, np.array([sense, 0.0]), ("wall",), np.atleast_2d(motion), **acting)
 
 
 class _Overturning(NamedTuple):
@@ -567,7 +567,7 @@ class Path(NamedTuple):
         moves, lines, velocity = Moves.from_pose(self.masonry, pose), self.masonry.lines, found.motion.ravel()
         closed = gaps_of(lines, moves)[2] <= self.masonry.tolerance
         normal = self.rates(moves, lines.normal) @ velocity
-        along = np.hypot.reduce([self.rates(moves, way) @ velocity for way in lines.across])
+        along = np.hypot.reduce([self.rates(moves, tangent) @ velocity for tangent in lines.tangents])
         least = STAYS * max(float(np.abs(normal[closed]).max(initial=0.0)), float(np.abs(velocity).max()))
         still = closed & (np.abs(normal) <= least)
         return Stay(still, still & (along <= least), closed & (along > STAYS * np.abs(velocity).max()))
@@ -611,9 +611,9 @@ class Path(NamedTuple):
             moves = Moves.from_pose(self.masonry, after)
             off = self.relative(after) - goal
             rows = [self.rates(moves, lines.normal)[stay.closed]]
-            rows += [self.rates(moves, way)[stay.stuck] for way in lines.across]
+            rows += [self.rates(moves, tangent)[stay.stuck] for tangent in lines.tangents]
             left = [(off * lines.normal).sum(axis=1)[stay.closed]]
-            left += [(off * way).sum(axis=1)[stay.stuck] for way in lines.across]
+            left += [(off * tangent).sum(axis=1)[stay.stuck] for tangent in lines.tangents]
             missing = np.concatenate(left)
             if np.abs(missing).max(initial=0.0) < ROUNDED * self.size:
                 break

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...problem.masonry.effects import acting, applied, dragged, place_in_world
+from ...problem.masonry.effects import applied, inertia_of_added_masses, place_in_world, wrench
 from ...problem.masonry.limit.collapse import Collapse, pushed
 from ...problem.masonry.limit.pose import Moves
 from ...problem.masonry.limit.statics import weight_of
@@ -44,7 +44,7 @@ class MovingPart(NamedTuple):
         at = np.array([masonry.centroids[i] for i in numbers] + [place_in_world(masonry, one) for one in masses])
         arms = at - np.asarray(masonry.centroids)[block]
         rows = [masonry.free.index(i) for i in block]
-        sway = [acting(arm, found.direction) @ found.motion[row] for arm, row in zip(arms, rows, strict=True)]
+        sway = [wrench(arm, found.direction) @ found.motion[row] for arm, row in zip(arms, rows, strict=True)]
         weight, speed = GRAVITY * np.array(mass), np.array(sway)
         return cls(found.moving, weight, block, at, found.direction, speed * weight.sum() / (weight @ speed))
 
@@ -64,5 +64,5 @@ def multiplier_of(found: Collapse, masonry: Masonry, effects: tuple[Effect, ...]
     """The multiplier of a mechanism without its ties, by virtual work of what is constant and of what grows [-]."""
     velocity, way = found.motion.ravel(), found.direction
     constant = weight_of(masonry) + applied(masonry, effects).ravel()
-    grown = pushed(masonry, way) + dragged(masonry, effects, way)
+    grown = pushed(masonry, way) + inertia_of_added_masses(masonry, effects, way)
     return float(-(constant @ velocity) / (grown.ravel() @ velocity))

@@ -283,15 +283,16 @@ def meetings(edges: Edges, pairs: Integers, tolerance: float, gap: float) -> Mee
     facing &= np.abs(_cross(edges.normal[edge], edges.normal[other])) <= PARALLEL
     pair, edge, other = pair[facing], edge[facing], other[facing]
     a, b, c, d = edges.start[edge], edges.end[edge], edges.start[other], edges.end[other]
-    way, n = (b - a) / np.hypot(*(b - a).T)[:, None], edges.normal[edge]
-    first, last, long = _dot(d - a, way), _dot(c - a, way), _dot(b - a, way)  # the other outline runs the other way
+    direction, n = (b - a) / np.hypot(*(b - a).T)[:, None], edges.normal[edge]
+    # the other outline runs the other way
+    first, last, long = _dot(d - a, direction), _dot(c - a, direction), _dot(b - a, direction)
     span = np.column_stack([np.maximum(0.0, first), np.minimum(long, last)])
     rise = _dot(c - d, n) / (last - first)
-    apart = _dot(d - a, n)[:, None] + rise[:, None] * (span - first[:, None])
-    lie = (span[:, 1] - span[:, 0] > SHORTEST_JOINT * tolerance) & ((-tolerance <= apart) & (apart <= gap)).all(axis=1)
+    gaps = _dot(d - a, n)[:, None] + rise[:, None] * (span - first[:, None])
+    lie = (span[:, 1] - span[:, 0] > SHORTEST_JOINT * tolerance) & ((-tolerance <= gaps) & (gaps <= gap)).all(axis=1)
     # ends are corners, without rounding, moved to the middle between the edges
-    starts = np.where((first > 0)[:, None], d, a) + (np.where(first > 0, -0.5, 0.5) * apart[:, 0])[:, None] * n
-    stops = np.where((last < long)[:, None], c, b) + (np.where(last < long, -0.5, 0.5) * apart[:, 1])[:, None] * n
+    starts = np.where((first > 0)[:, None], d, a) + (np.where(first > 0, -0.5, 0.5) * gaps[:, 0])[:, None] * n
+    stops = np.where((last < long)[:, None], c, b) + (np.where(last < long, -0.5, 0.5) * gaps[:, 1])[:, None] * n
     # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
     travel = np.column_stack([long - first, last])
     own = np.column_stack([edge, other])[lie] - edges.first[pairs[pair[lie]]]

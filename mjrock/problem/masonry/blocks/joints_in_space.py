@@ -191,7 +191,7 @@ class Looking(NamedTuple):
     axes: Array
 
 
-def axes_across(normals: Array) -> Array:
+def tangent_axes(normals: Array) -> Array:
     """Two unit vectors across each of some normals, shape (m, 3), right-handed with it, shape (m, 2, 3)."""
     first = convex.cross_in_space(np.eye(3)[np.abs(normals).argmin(axis=1)], normals)
     first /= np.linalg.norm(first, axis=1)[:, None]
@@ -208,10 +208,10 @@ def _measures_of(flat: bytes) -> tuple[float, float, Array]:
 @lru_cache(maxsize=SHAPES)
 def _axes_of(direction: tuple[float, float, float]) -> Array:
     """The same of one normal, shape (2, 3)."""
-    return frozen(axes_across(np.array([direction]))[0])
+    return frozen(tangent_axes(np.array([direction]))[0])
 
 
-def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
+def tangent_axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
     """Two unit vectors across each of some normals, the first along its force, or one for all, where it can be.
 
     Shapes are (m, 3) each.
@@ -219,7 +219,7 @@ def axes_along(normals: Array, forces: Array) -> tuple[Array, Array]:
     first = forces - (normals * forces).sum(axis=1)[:, None] * normals
     lengths = np.linalg.norm(first, axis=1)
     blunt = lengths <= BLUNT * np.linalg.norm(forces, axis=-1)
-    first = np.where(blunt[:, None], axes_across(normals)[:, 0], first / np.where(blunt, 1.0, lengths)[:, None])
+    first = np.where(blunt[:, None], tangent_axes(normals)[:, 0], first / np.where(blunt, 1.0, lengths)[:, None])
     return first, convex.cross_in_space(normals, first)
 
 
@@ -241,7 +241,7 @@ def joints_in_space(
     parts = faces
     if number.max() > 1:
         parts = Faces.from_sides([solid.corners for solid in solids], [solid.sides for solid in solids])
-    axes = axes_across(faces.normals)
+    axes = tangent_axes(faces.normals)
     sides = [side for block in blocks for side in block.sides]
     joints: list[SpaceJoint] = []
     overlaps: list[tuple[float, int, int]] = []
@@ -252,7 +252,7 @@ def joints_in_space(
         both = np.column_stack([one, other])
         depth = np.minimum(parts.sunk(both), parts.sunk(both[:, ::-1]))
         for i in np.flatnonzero(depth > tolerance).tolist():
-            depth[i] = min(depth[i], _depth_across_edges(solids[one[i]], solids[other[i]]))
+            depth[i] = min(depth[i], _depth_along_edge_axes(solids[one[i]], solids[other[i]]))
         deepest = np.maximum.reduceat(depth, np.flatnonzero(np.diff(pair, prepend=-1)))
         deep, near = deepest > tolerance, some[deepest >= -gap]
         overlaps += [(how, i, j) for how, (i, j) in zip(deepest[deep].tolist(), some[deep].tolist(), strict=True)]
@@ -266,13 +266,13 @@ def joints_in_space(
     return unlike_named(joints)
 
 
-def _depth_across_edges(block: Convex, neighbour: Convex) -> float:
-    """The least depth by which two blocks overlap across an edge of each, infinite where these are parallel [m]."""
-    across = edge_separating_axes(block, neighbour)
-    if not len(across):
+def _depth_along_edge_axes(block: Convex, neighbour: Convex) -> float:
+    """The least overlap of two blocks along the separating axes of their edges [m], infinite without such an axis."""
+    axes = edge_separating_axes(block, neighbour)
+    if not len(axes):
         return np.inf
-    along, beside = block.corners @ across.T, neighbour.corners @ across.T
-    ahead, behind = along.max(axis=0) - beside.min(axis=0), beside.max(axis=0) - along.min(axis=0)
+    own, other = block.corners @ axes.T, neighbour.corners @ axes.T
+    ahead, behind = own.max(axis=0) - other.min(axis=0), other.max(axis=0) - own.min(axis=0)
     return float(np.minimum(ahead, behind).min())
 
 

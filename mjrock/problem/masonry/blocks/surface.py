@@ -12,7 +12,7 @@ from ....geometry import convex
 from ....geometry.hull import Side
 from ....quantities import Array, Flags
 from .joints import SHORTEST_JOINT, Joint
-from .joints_in_space import SpaceJoint, axes_across
+from .joints_in_space import SpaceJoint, tangent_axes
 from .polygon import Polygon
 from .polyhedron import Polyhedron
 
@@ -82,12 +82,13 @@ def _uncovered(side: Side, covered: Sequence[Array], shortest: float) -> list[Ar
     """The ends of what is left of an edge, shape (2, 2) each, without what is covered."""
     start, end = side.corners
     length = float(np.linalg.norm(end - start))
-    way = (end - start) / length
-    spans = sorted(sorted(((ends - start) @ way).tolist()) for ends in covered)
+    direction = (end - start) / length
+    spans = sorted(sorted(((ends - start) @ direction).tolist()) for ends in covered)
     left, at = [], 0.0
     for low, high in [*spans, [length, length]]:
         if low - at > shortest:
-            left.append(np.array([start + at * way if at > 0 else start, start + low * way if low < length else end]))
+            ends = start + at * direction if at > 0 else start, start + low * direction if low < length else end
+            left.append(np.array(ends))
         at = max(at, high)
     return left
 
@@ -140,7 +141,7 @@ def _area(loop: Sequence[Side]) -> float:
 
 
 def _area_in_space(side: Side) -> float:
-    return convex.area(side.corners @ axes_across(side.normal[None])[0].T)
+    return convex.area(side.corners @ tangent_axes(side.normal[None])[0].T)
 
 
 def _merged(sides: list[Side], close: float) -> list[Side]:
@@ -161,7 +162,7 @@ def _both(side: Side, other: Side, close: float) -> Side | None:
     origin = side.corners[0]
     if side.normal @ other.normal < LIKE or np.abs((other.corners - origin) @ side.normal).max() > close:
         return None
-    axes = axes_across(side.normal[None])[0]
+    axes = tangent_axes(side.normal[None])[0]
     flat, beside = (side.corners - origin) @ axes.T, (other.corners - origin) @ axes.T
     points = np.concatenate([flat, beside])
     hull = scipy.spatial.ConvexHull(points)

@@ -339,9 +339,9 @@ def _holes(openings: Sequence[tuple[float, Opening]], walls: Walls) -> tuple[lis
     return holes, lintels
 
 
-def _require_inside(i: int, taken: Rectangle, walls: Walls) -> None:
+def _require_inside(i: int, occupied: Rectangle, walls: Walls) -> None:
     """Raise a ValueError for an opening that does not lie, with its lintel, within the courses that it cuts."""
-    left, right, sill, top = taken
+    left, right, sill, top = occupied
     near = WHOLE * walls.unit
     if top > (walls.courses + walls.gable) * walls.high + near:
         raise ValueError(f"openings[{i}] has no course above it for its lintel, which ends at {top:g} m")
@@ -478,8 +478,8 @@ def between_sides(bending: HorizontalBending) -> list[Polyhedron]:
     blocks = [part("left", whole, (-half, crack)), part("right", whole, (crack, half))]
     blocks += [part("side_0", whole, (-half - t, -half)), part("side_1", whole, (half, half + t))]
     beyond = half + 0.5 * t, half + 2.5 * t
-    ways = [(x, (-beyond[1], -beyond[0])) for x in guides] + [(x, beyond) for x in guides]
-    blocks += [part(f"guide_{i}", x, y) for i, (x, y) in enumerate(ways)]
+    directions = [(x, (-beyond[1], -beyond[0])) for x in guides] + [(x, beyond) for x in guides]
+    blocks += [part(f"guide_{i}", x, y) for i, (x, y) in enumerate(directions)]
     return [ground_below((-t, -beyond[1], 0.0), (2 * t, beyond[1], high)), *blocks]
 
 

@@ -74,16 +74,16 @@ def bridge(
     springing, outer = springing_of(radius, thickness, span_angle)
     skew = outer - springing
     wide = require_within("pier_width", pier_width, skew[0] * (1 if spans == 1 else 2), 1e3, "m")
-    apart, level, top = 2 * springing[0] + wide, pier_height - springing[1], pier_height + skew[1]
+    spacing, level, top = 2 * springing[0] + wide, pier_height - springing[1], pier_height + skew[1]
     polygons = []
     for i in range(spans):
         begin, end = 0 if ends and i == 0 else 1, None if ends and i == spans - 1 else -1
         for block in blocks[begin:end]:
             name = block.name if spans == 1 or block.fixed else f"span_{i}_{block.name}"
-            moved = np.add(block.corners, (i * apart, level))
+            moved = np.add(block.corners, (i * spacing, level))
             polygons.append(Polygon(moved, density, length, block.fixed, name))
     for i in range(ends, spans + 1 - ends):
-        right = i * apart - springing[0]
+        right = i * spacing - springing[0]
         left = right - wide
         beside = [(right, pier_height), (right - skew[0], top)] if i < spans else [(right, top)]
         before = [(left + skew[0], top), (left, pier_height)] if i > 0 else [(left, top)]
@@ -202,16 +202,16 @@ def groin_vault(
 
 
 def _of_web(polygon: Polygon, ends: tuple[float, float], turns: int, name: str, crown: bool = False) -> Polyhedron:
-    """What a course of a web has between two distances y from the middle of the bay, the farther one first [m].
+    """The part of a course of a web between two distances y from the middle of the bay, the larger one first [m].
 
     The course ends at the groins, where y = |x|, which meet above the middle in the course at the crown.
     """
-    (far, near), (x, z) = ends, polygon.corners.T
+    (outer, inner_end), (x, z) = ends, polygon.corners.T
     if crown:
         x, z = np.append(x, [0.0, 0.0]), np.append(z, [z.min(), z.max()])
-    inner = np.maximum(np.abs(x), near)
-    beyond = far - inner > 1e-6 * far
-    inside, outside = np.column_stack([x, inner, z]), np.column_stack([x, np.full_like(x, far), z])[beyond]
+    inner = np.maximum(np.abs(x), inner_end)
+    beyond = outer - inner > 1e-6 * outer
+    inside, outside = np.column_stack([x, inner, z]), np.column_stack([x, np.full_like(x, outer), z])[beyond]
     vertices = np.vstack([inside, outside]) @ np.linalg.matrix_power(QUARTER_TURN, turns)
     return Polyhedron(vertices, polygon.density, name=name)
 

@@ -26,7 +26,7 @@ def guid_of(kind: str, name: object) -> str:
     return str(uuid.uuid5(uuid.NAMESPACE_URL, f"{kind} {name}"))
 
 
-def held(kind: str, data: object, guid: str) -> dict[str, object]:
+def part_entry(kind: str, data: object, guid: str) -> dict[str, object]:
     """A part, as COMPAS keeps it."""
     return {"dtype": kind, "data": data, "guid": guid}
 
@@ -99,8 +99,8 @@ def _parts(content: Part | list[Part]) -> list[tuple[object, Part]]:
 
 def _block(part: Part, key: object, materials: Part) -> Mesh:
     """A block: an element of a model, a node of an assembly, or a mesh."""
-    held = next((name for name in ("geometry", "shape", "block") if name in part), None)
-    shape = _inside(part if held is None else part[held])
+    entry = next((name for name in ("geometry", "shape", "block") if name in part), None)
+    shape = _inside(part if entry is None else part[entry])
     order = {str(vertex): i for i, vertex in enumerate(shape["vertex"])}
     places = np.array([[float(vertex[axis]) for axis in "xyz"] for vertex in shape["vertex"].values()])
     faces = [tuple(order[str(vertex)] for vertex in face) for face in shape["face"].values()]
@@ -108,7 +108,7 @@ def _block(part: Part, key: object, materials: Part) -> Mesh:
         matrix = np.array(_inside(part["transformation"])["matrix"], dtype=float)
         places = places @ matrix[:3, :3].T + matrix[:3, 3]
     density = _inside(materials.get(str(part.get("material")), {})).get("density")
-    name = block_name(str(part.get("name") or ""), "block" if held == "geometry" else f"block_{key}")
+    name = block_name(str(part.get("name") or ""), "block" if entry == "geometry" else f"block_{key}")
     return Mesh(name, places, faces, bool(part.get("is_support", False)), density)
 
 
@@ -139,9 +139,9 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
         inside: dict[str, object] = {"transformation": None, "features": [], "name": name, "material": stone}
         inside |= {"geometry": {"dtype": "compas.datastructures/Mesh", "data": mesh}, "is_support": block.fixed}
         guid = guid_of("block", name)
-        elements[guid] = held("compas_dem.elements/Block", inside, guid)
+        elements[guid] = part_entry("compas_dem.elements/Block", inside, guid)
     stones = {
-        guid: held("compas_dem.material/Stone", {"name": "Stone", "density": density}, guid)
+        guid: part_entry("compas_dem.material/Stone", {"name": "Stone", "density": density}, guid)
         for guid, density in ((guid_of("density", density), density) for density in densities)
     }
     children = [{"name": "ElementNode", "element": element} for element in elements]
@@ -155,6 +155,6 @@ def compas_text(blocks: Sequence[Polyhedron], names: Sequence[str]) -> str:
     }
     content: dict[str, object] = {"transformation": None, "elements": elements, "materials": stones, "graph": graph}
     content["tree"] = {"attributes": {}, "root": {"name": "root", "children": children}}
-    model = held("compas_dem.models/BlockModel", content, model_guid(names))
+    model = part_entry("compas_dem.models/BlockModel", content, model_guid(names))
     model["inheritance"] = ["compas_model.models/Model"]
     return json.dumps(model, indent=1) + "\n"

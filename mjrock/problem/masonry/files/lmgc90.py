@@ -136,5 +136,5 @@ def _rigid(text: str) -> dict[int, str]:
 
 def _driven(text: str) -> bool | None:
     """Whether the three velocities of a body that are given move it; None where they are not all given."""
-    given = {int(way): (_value(constant), _value(wave)) for way, constant, wave in DRIVEN.findall(text)}
+    given = {int(direction): (_value(constant), _value(wave)) for direction, constant, wave in DRIVEN.findall(text)}
     return any(map(any, given.values())) if {1, 2, 3} <= given.keys() else None

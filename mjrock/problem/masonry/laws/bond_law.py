@@ -45,19 +45,19 @@ def tear(bond: LawRow, gap: float) -> None:
     The opening w of the crack solves k (u - w) = T exp(-w r), with u the largest gap, T the strength and r its rate.
     Where k is hardly above T r, the spring gives back what the crack takes, and the bond breaks at once.
     """
-    far = max(bond.largest_gap, gap)
-    bond.largest_gap, crack, strength = far, bond.crack, bond.tension * bond.integrity
-    if bond.k * (far - crack) <= strength:
+    largest = max(bond.largest_gap, gap)
+    bond.largest_gap, crack, strength = largest, bond.crack, bond.tension * bond.integrity
+    if bond.k * (largest - crack) <= strength:
         return
     if bond.opening_rate * strength >= BRITTLE * bond.k:
-        bond.crack, bond.integrity, bond.secant = far, 0.0, 0.0
+        bond.crack, bond.integrity, bond.secant = largest, 0.0, 0.0
         return
     for _ in range(PASSES):
-        held = strength * math.exp(-bond.opening_rate * (crack - bond.crack))
-        crack = min(crack + (bond.k * (far - crack) - held) / (bond.k - bond.opening_rate * held), far)
+        pull = strength * math.exp(-bond.opening_rate * (crack - bond.crack))
+        crack = min(crack + (bond.k * (largest - crack) - pull) / (bond.k - bond.opening_rate * pull), largest)
     bond.integrity *= math.exp(-bond.opening_rate * (crack - bond.crack))
     bond.crack = crack
-    bond.secant = bond.k * (far - crack) / far
+    bond.secant = bond.k * (largest - crack) / largest
 
 
 @inlined
@@ -72,8 +72,8 @@ def hardened(bond: LawRow, closing: float) -> float:
 def harden(bond: LawRow, gap: float, sheared: float) -> float:
     """Close a joint at a gap [m] for good until it bears what presses, or to its peak, see `crush`. Returns by how much
     [m]."""
-    left: float = bond.hardening - bond.crushed
-    low, high = 0.0, min(left, -gap)
+    remaining: float = bond.hardening - bond.crushed
+    low, high = 0.0, min(remaining, -gap)
     if math.hypot(bond.k * (gap + high), sheared) < hardened(bond, high):
         for _ in range(CLOSING_HALVINGS):
             closing = 0.5 * (low + high)
@@ -82,7 +82,7 @@ def harden(bond: LawRow, gap: float, sheared: float) -> float:
             else:
                 low = closing
     bond.strength = hardened(bond, high)
-    bond.crushed = bond.crushed + high if high < left else bond.hardening
+    bond.crushed = bond.crushed + high if high < remaining else bond.hardening
     return high
 
 
@@ -106,8 +106,8 @@ def soften(bond: LawRow, gap: float, sheared: float) -> float:
     """Crush a joint beyond its peak, see `crush`."""
     closing: float = 0.0
     for _ in range(PASSES):
-        left = bond.strength * math.exp(-bond.crushing_rate * closing)
-        closing = max(-gap - math.sqrt(max(left * left - sheared * sheared, 0.0)) / bond.k, 0.0)
+        strength = bond.strength * math.exp(-bond.crushing_rate * closing)
+        closing = max(-gap - math.sqrt(max(strength * strength - sheared * sheared, 0.0)) / bond.k, 0.0)
     bond.crushed += closing
     bond.strength *= math.exp(-bond.crushing_rate * closing)
     bond.integrity *= math.exp(-bond.crushing_rate * closing)
@@ -127,6 +127,6 @@ def wear(bond: LawRow, slid: float) -> float:
     if bond.slip_rate == 0 or slid == 0:
         return 0.0
     share = -math.expm1(-bond.slip_rate * slid)
-    taken: float = bond.cohesion * bond.integrity * share / bond.slip_rate
+    dissipated: float = bond.cohesion * bond.integrity * share / bond.slip_rate
     bond.integrity *= 1 - share
-    return taken
+    return dissipated

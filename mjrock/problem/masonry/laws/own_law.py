@@ -53,11 +53,11 @@ class OwnLaw(UserLaw):
         remembers = bool(cls.memory)
 
         def answer(row: Any, closing: float, rate: float) -> None:
-            held = energy(row, closing) if remembers else 0.0
+            before = energy(row, closing) if remembers else 0.0
             remember(row, closing)
             row.stress_ = stress(row, closing)
             row.energy_ = energy(row, closing)
-            row.taken_ = held - row.energy_ if remembers else 0.0
+            row.dissipated_ = before - row.energy_ if remembers else 0.0
             row.damping_ = damping(row, closing, rate)
             row.lost_ = lost(row)
 
@@ -137,9 +137,9 @@ class Own(AppliedLaw):
 
     def stiffest(self, deepest: float) -> tuple[float, float]:
         """The largest stiffness [N/m3] and damping coefficient [N s/m3] up to a closing either way [m]."""
-        ways = np.linspace(0.0, deepest, 17)[1:].tolist()
-        k = max(self.slope(sign * way) for way in ways for sign in ((1.0, -1.0) if self.pulls else (1.0,)))
-        c = max(abs(self.answer(way, rate).damping) / rate for way in ways for rate in RATES)
+        closings = np.linspace(0.0, deepest, 17)[1:].tolist()
+        k = max(self.slope(sign * closing) for closing in closings for sign in ((1.0, -1.0) if self.pulls else (1.0,)))
+        c = max(abs(self.answer(closing, rate).damping) / rate for closing in closings for rate in RATES)
         return max(k, 1e-9 * self.k_n), c
 
     def require_fit(self, joint: str, k_n: float, k_s: float, friction: float, points: int) -> None:

@@ -14,7 +14,7 @@ from ....notebook import NotebookPicture
 from ....quantities import Array, named
 from ...wall.case import Case
 from ...wall.effect import Effect
-from ..blocks.joints_in_space import axes_along
+from ..blocks.joints_in_space import tangent_axes_along
 from ..laws.joint_law import shear_limit
 from ..masonry import Masonry
 from .limit_state import Programme, states_without_dilatancy
@@ -145,21 +145,21 @@ def limit_of(
     push, grown, applied = loads
     weight, lines, resultant = weight_of(masonry), masonry.lines, grown[:, :3].sum(axis=0)
     turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED * np.abs(grown[:, :3]).sum()
-    across = axes_along(lines.normal, resultant) if turned else lines.across
-    state = masonry, weight + np.ravel(applied), grown, across, ties or Pulls.from_forces(masonry)
-    found = _associated(*state, least) if associated else _without_dilatancy(*state)
-    if found is None:
+    tangents = tangent_axes_along(lines.normal, resultant) if turned else lines.tangents
+    state = masonry, weight + np.ravel(applied), grown, tangents, ties or Pulls.from_forces(masonry)
+    forces = _associated(*state, least) if associated else _without_dilatancy(*state)
+    if forces is None:
         return Collapse(math.inf, push, (), np.zeros_like(grown), masonry=masonry)
-    total, multipliers = float(np.abs(weight).sum()), found.multipliers
+    total, multipliers = float(np.abs(weight).sum()), forces.multipliers
     return Collapse(
         multipliers[0],
         push,
-        moving(masonry, found.velocities),
-        (found.velocities / sizes_of(masonry)).reshape(grown.shape),
-        joint_forces(masonry, total * found.lines),
+        moving(masonry, forces.velocities),
+        (forces.velocities / sizes_of(masonry)).reshape(grown.shape),
+        joint_forces(masonry, total * forces.lines),
         multipliers[1:],
         masonry,
-        pulls=total * found.pulls,
+        pulls=total * forces.pulls,
     )
 
 
@@ -188,14 +188,14 @@ class LimitForces(NamedTuple):
 
 
 def _associated(
-    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls, least: float
+    masonry: Masonry, constant: Array, grown: Array, tangents: tuple[Array, ...], ties: Pulls, least: float
 ) -> LimitForces | None:
     """The state of associated friction, None where nothing gives way."""
     sizes, friction, total = sizes_of(masonry), masonry.joint_friction, float(np.abs(weight_of(masonry)).sum())
-    pressed, lines = cones(masonry, friction, across), masonry.lines
-    pulls, held, ways = bonded(masonry, across)
-    raised, count, end = (grown.ravel() / total / sizes)[:, None], pressed.shape[1], pressed.shape[1] + len(held)
-    highest = np.concatenate([np.full(count, np.inf), held / total, ties.strength / total, [np.inf]])
+    pressed, lines = cones(masonry, friction, tangents), masonry.lines
+    pulls, strengths, directions = bonded(masonry, tangents)
+    raised, count, end = (grown.ravel() / total / sizes)[:, None], pressed.shape[1], pressed.shape[1] + len(strengths)
+    highest = np.concatenate([np.full(count, np.inf), strengths / total, ties.strength / total, [np.inf]])
     bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))
     bounds[-1, 0], prices[-1] = least, -1.0
     columns = hstack([pressed, pulls, ties.columns, raised])
@@ -210,16 +210,16 @@ def _associated(
         answer.x[:count].reshape(-1, len(lines.k), 1),
         shear_limit(masonry.table.laws(lines.joint, friction=friction[lines.joint]), 1.0),
     )
-    forces = (shares * (lines.normal + np.asarray(limits)[:, None] * edges_of(across))).sum(axis=0)
-    forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * ways).sum(axis=0)
+    forces = (shares * (lines.normal + np.asarray(limits)[:, None] * edges_of(tangents))).sum(axis=0)
+    forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * directions).sum(axis=0)
     return LimitForces((float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces, answer.x[end:-1])
 
 
 def _without_dilatancy(
-    masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
+    masonry: Masonry, constant: Array, grown: Array, tangents: tuple[Array, ...], ties: Pulls
 ) -> LimitForces | None:
     """The least state without dilatancy, None where nothing gives way."""
-    programme = Programme.from_forces(masonry, constant, grown, across, ties)
+    programme = Programme.from_forces(masonry, constant, grown, tangents, ties)
     states = states_without_dilatancy(programme)
     if not states:
         return None

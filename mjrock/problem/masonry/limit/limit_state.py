@@ -36,7 +36,7 @@ from .statics import Pulls, edges_of, least_cost, method, sizes_of, weight_of
 
 SLOPE, SHRINKS, LEAST_SLOPE = 0.3, 0.9, 0.01
 """Dilatancy of the first cone that follows the pressures, over the friction, its factor a turn, and the least [-]."""
-TAKEN = 0.6
+NEW_SHARE = 0.6
 """Share of the new pressures in those that the next cones stand on [-]."""
 TURNS, EVERY = 24, 3
 """Most turns of the search for forces and mechanism of one state, and of the cones; turns from start to start."""
@@ -46,7 +46,7 @@ SHARED = 1e-10
 """Power x . z up to which forces and mechanism make a state, over that of the forces that grow [-]."""
 NOTHING, STILL = 1e-9, 1e-8
 """Force that counts as none, over the weight, and a rate, over the largest of its mechanism [-]."""
-HELD = 1e-7
+STATE_TOLERANCE = 1e-7
 """What forces may miss, rates go the wrong way and both share in a state that is returned, as above [-]."""
 GAIN = 1e-9
 """Gain of two steps below which a descent ends [-]."""
@@ -101,25 +101,25 @@ class Programme:
 
     @classmethod
     def from_forces(
-        cls, masonry: Masonry, constant: Array, grown: Array, across: tuple[Array, ...], ties: Pulls
+        cls, masonry: Masonry, constant: Array, grown: Array, tangents: tuple[Array, ...], ties: Pulls
     ) -> Programme:
         """Those of masonry under forces that are constant, its weight among them, and forces that grow [N, N m], of all
         unknowns, and of ties.
 
-        The edges of the cones begin at the first of the directions `across` along the faces.
+        The edges of the cones begin at the first of the directions `tangents` along the faces.
         """
         lines, sizes = masonry.lines, sizes_of(masonry)
         m, group = len(lines.k), np.arange(len(lines.k)) if masonry.in_space else lines.joint
         leader, of_line = np.unique(group, return_index=True, return_inverse=True)[1:]
-        edges = edges_of(across)
+        edges = edges_of(tangents)
         rubbing = [rates(masonry.blocks, lines, edge)[leader] for edge in edges]
         limits = np.asarray(shear_limit(masonry.table.laws(lines.joint), 1.0))
-        held, whole = csr_array((limits, (of_line, np.arange(m))), shape=(len(leader), m)), eye_array(len(leader))
+        friction, whole = csr_array((limits, (of_line, np.arange(m))), shape=(len(leader), m)), eye_array(len(leader))
         pressing = rates(masonry.blocks, lines, lines.normal)
         balance = [diags_array(1 / sizes) @ part.T for part in (pressing, *rubbing)]
-        matrix = csc_array(block_array([[*balance, None], [held, *[-whole] * (len(edges) + 1)]]))
+        matrix = csc_array(block_array([[*balance, None], [friction, *[-whole] * (len(edges) + 1)]]))
         rest = csr_array((len(leader), matrix.shape[1] - m))
-        grip = csc_array(block_array([[csr_array((len(sizes), m)), None], [held, rest]]))
+        grip = csc_array(block_array([[csr_array((len(sizes), m)), None], [friction, rest]]))
         total, none = float(np.abs(weight_of(masonry)).sum()), np.zeros(len(leader))
         down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (constant, grown))
         count, yields = len(ties.strength), np.isfinite(ties.strength)
@@ -167,7 +167,7 @@ class Programme:
         """Whether forces balance, nothing that opens or slides goes the wrong way, and they share no power."""
         z = (self.matrix - self.grip).T @ state.p
         missing = np.abs(self.matrix @ state.x + state.multiplier * self.grown + self.weight).max()
-        return bool(max(missing, -z.min() / np.abs(z).max(), abs(state.x @ z)) < HELD)
+        return bool(max(missing, -z.min() / np.abs(z).max(), abs(state.x @ z)) < STATE_TOLERANCE)
 
     @property
     def pulled(self) -> int:
@@ -198,14 +198,14 @@ def states_without_dilatancy(programme: Programme) -> tuple[State, ...]:
     if programme.mechanism(nothing) is None:
         return ()
     ends = [_descended(programme, _met(programme, np.maximum(x, 0.0))) for x in _starts(programme, nothing)]
-    held = [state for state in ends if state is not None and programme.holds(state)]
-    found = {round(state.multiplier, DIGITS): state for state in held}
-    if not found:
+    limited = [state for state in ends if state is not None and programme.holds(state)]
+    states = {round(state.multiplier, DIGITS): state for state in limited}
+    if not states:
         raise ValueError(
             "masonry: no state of friction without dilatancy was found near that of associated friction, whose "
             "multiplier is an upper bound; give associated=True, or push the masonry slowly by explicit steps"
         )
-    return tuple(found[multiplier] for multiplier in sorted(found))
+    return tuple(states[multiplier] for multiplier in sorted(states))
 
 
 def _starts(programme: Programme, nothing: Array) -> Iterator[Array]:
@@ -225,7 +225,7 @@ def _starts(programme: Programme, nothing: Array) -> Iterator[Array]:
             return
         if turn % EVERY == EVERY - 1:
             yield answer.x[:-1]
-        last = TAKEN * answer.x[:-1] + (1 - TAKEN) * last
+        last = NEW_SHARE * answer.x[:-1] + (1 - NEW_SHARE) * last
         share = max(SHRINKS * share, LEAST_SLOPE)
 
 

@@ -140,8 +140,8 @@ def _joint(joint: Joint | SpaceJoint, moves: Moves) -> Joint | SpaceJoint:
 
 def _carried(masonry: Masonry, effect: Effect, moves: Moves) -> Effect:
     """An effect where its block, and that of its anchor, have moved."""
-    held = np.array(place_in_world(masonry, effect))
-    changes: dict[str, object] = {"at": moves.at(effect.block, held), "height": None}
+    point = np.array(place_in_world(masonry, effect))
+    changes: dict[str, object] = {"at": moves.at(effect.block, point), "height": None}
     if isinstance(effect, Anchored):
         changes["anchor"] = _ends(masonry, effect, moves)[1]
     elif effect.offset:
@@ -151,9 +151,9 @@ def _carried(masonry: Masonry, effect: Effect, moves: Moves) -> Effect:
 
 def _ends(masonry: Masonry, link: Anchored, moves: Moves) -> tuple[Array, Array]:
     """Both ends of a link where its blocks have moved [m]."""
-    held = np.array(place_in_world(masonry, link))
-    anchor, block = link.anchor_of(held), link.anchor_block
-    return moves.at(link.block, held), anchor if block is None else moves.at(block, anchor)
+    point = np.array(place_in_world(masonry, link))
+    anchor, block = link.anchor_of(point), link.anchor_block
+    return moves.at(link.block, point), anchor if block is None else moves.at(block, anchor)
 
 
 def spans_in(masonry: Masonry, link: Anchored, poses: Array) -> Array:
@@ -196,9 +196,9 @@ def _edges(masonry: Masonry, moves: Moves, of: Integers, joint: Integers) -> Arr
 
 def _along(edges: Array, at: Array) -> tuple[Array, Array]:
     """How far points lie along edges, and how long these are [m], shape (n,) each."""
-    way = edges[:, 1] - edges[:, 0]
-    long = np.hypot(*way.T)
-    return ((at - edges[:, 0]) * way).sum(axis=1) / long, long
+    direction = edges[:, 1] - edges[:, 0]
+    long = np.hypot(*direction.T)
+    return ((at - edges[:, 0]) * direction).sum(axis=1) / long, long
 
 
 def _in_space(masonry: Masonry, moves: Moves) -> Lines:

@@ -113,9 +113,9 @@ def nudged(masonry: Masonry, applied: Array | float = 0.0) -> tuple[tuple[str, .
     """
     weight = weight_of(masonry).reshape(len(masonry.free), -1)
     for axis in range(masonry.freedom.translations - 1):
-        for way in (NUDGE, -NUDGE):
+        for direction in (NUDGE, -NUDGE):
             push = np.zeros_like(weight)
-            push[:, axis] = way * weight.sum(axis=1)
+            push[:, axis] = direction * weight.sum(axis=1)
             if names := falling(masonry, applied + push):
                 return names, friction_lacking(masonry, applied + push) is not None
     return None
@@ -165,22 +165,22 @@ def least_cost(prices: Array, **programme: object) -> scipy.optimize.OptimizeRes
     return waited(partial(scipy.optimize.linprog, prices, **programme), "limit analysis")
 
 
-def cones(masonry: Masonry, friction: Array, across: tuple[Array, ...] | None = None) -> csc_array:
+def cones(masonry: Masonry, friction: Array, tangents: tuple[Array, ...] | None = None) -> csc_array:
     """Generalised forces of unit pressures along the edges of the cones, moments over the size of the block.
 
     There is a column for each edge and line, the first edges of all lines before the second, shape (unknowns, edges m).
-    The friction is that of each joint [-], shape (joints,). The edges begin at the first of the directions `across`
-    along the faces, which are those of `Lines.across` unless others are given.
+    The friction is that of each joint [-], shape (joints,). The edges begin at the first of the directions `tangents`
+    along the faces, which are those of `Lines.tangents` unless others are given.
     """
     lines = masonry.lines
     pressing = rates(masonry.blocks, lines, lines.normal)
     law = masonry.table.laws(lines.joint, friction=friction[lines.joint])
     rubbed = diags_array(shear_limit(law, 1.0))  # along the face, of a unit pressure
-    rows = [pressing + rubbed @ rates(masonry.blocks, lines, edge) for edge in edges_of(across or lines.across)]
+    rows = [pressing + rubbed @ rates(masonry.blocks, lines, edge) for edge in edges_of(tangents or lines.tangents)]
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 
 
-def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[csc_array, Array, Array]:
+def bonded(masonry: Masonry, tangents_given: tuple[Array, ...] | None = None) -> tuple[csc_array, Array, Array]:
     """What bonds hold beyond the cones: pulls, and forces along the faces either way.
 
     In space the forces along a face fill a square about the circle of the cohesion.
@@ -189,8 +189,8 @@ def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[c
         Generalised forces of unit forces, moments over the size of the block, shape (unknowns, n m), their limits [N],
         shape (n m,), and their directions, shape (n, m, d). None has a column where no joint has a bond.
     """
-    lines, ways = masonry.lines, across or masonry.lines.across
-    directions = np.stack([-lines.normal, *(sign * way for way in ways for sign in (1.0, -1.0))])
+    lines, tangents = masonry.lines, tangents_given or masonry.lines.tangents
+    directions = np.stack([-lines.normal, *(sign * direction for direction in tangents for sign in (1.0, -1.0))])
     if not any(masonry.bonds):
         return csc_array((len(masonry.free) * masonry.freedom.nv, 0)), np.zeros(0), directions[:0]
     both = zip(masonry.joints, masonry.bonds, strict=True)
@@ -201,17 +201,17 @@ def bonded(masonry: Masonry, across: tuple[Array, ...] | None = None) -> tuple[c
         )
     area = masonry.areas_of(lines.k, lines.joint)
     pull, along = (area * strengths(masonry.bonds, name)[lines.joint] for name in ("tension", "cohesion"))
-    columns = vstack([rates(masonry.blocks, lines, way) for way in directions]).T
-    limits = np.concatenate([pull, *[along] * (2 * len(ways))])
+    columns = vstack([rates(masonry.blocks, lines, direction) for direction in directions]).T
+    limits = np.concatenate([pull, *[along] * (2 * len(tangents))])
     return csc_array(diags_array(1 / sizes_of(masonry)) @ columns), limits, directions
 
 
-def edges_of(across: tuple[Array, ...]) -> Array:
+def edges_of(tangents: tuple[Array, ...]) -> Array:
     """Directions along the faces of the edges of the cones of lines, both ways in the plane, shape (edges, m, d)."""
-    count = 2 if len(across) == 1 else EDGES
+    count = 2 if len(tangents) == 1 else EDGES
     turns = 2 * math.pi * np.arange(count) / count
-    spread = np.column_stack([np.cos(turns), np.sin(turns)])[:, : len(across)]
-    return np.asarray(np.einsum("ea,amd->emd", spread, np.stack(across)))
+    spread = np.column_stack([np.cos(turns), np.sin(turns)])[:, : len(tangents)]
+    return np.asarray(np.einsum("ea,amd->emd", spread, np.stack(tangents)))
 
 
 def _balanced(
