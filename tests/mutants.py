@@ -188,7 +188,7 @@ EQUIVALENT = {
     "rest_geometry.py: arm = self.middle - np.where(self.below[:, None] < 0, 1, self.rest[self.below])": (
         "joints on what is fixed have no arm that is read"
     ),
-    "rows.py: if points.held[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
+    "rows.py: if points.friction_inertia[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
     "forces.py: if not kinds.released_on[i] if n == 0 else now.gap > 0:": "at a gap of zero nothing presses",
     **{
         "compound.py: reaching = [part for part in self.polygons if np.ptp(np.clip(part.corners[:, 1] - z, "
@@ -257,9 +257,8 @@ EQUIVALENT = {
     "rest.py: NEGLIGIBLE_STIFFNESS = 2e-12": "what is put down to rounding is far below what lets bodies fall",
     "rest.py: return pose.reshape(-2, potential.structure.places.freedom.nq)": "numpy takes any negative number so",
     "handover.py: sense = old.sense / new.sense": "a sense is 1 or -1",
-    "handover.py: of_force, of_energy = (min(REGAINED, had / force), held / energy) if force > 0 else (1, 0.0)": (
-        "where no place presses, none has an overlap that a share is taken of"
-    ),
+    "handover.py: of_force, of_energy = (min(REGAINED, force_before / force), energy_before / energy) if force > 0 "
+    "else (1, 0.0)": "where no place presses, none has an overlap that a share is taken of",
     "constants.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
     "contact.py: TOUCH_PASSES = 6": "more passes take time only",
     "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (
@@ -310,14 +309,13 @@ EQUIVALENT = {
     "finder.py: share = found.share * np.where(over, found.area / np.where(over, in_pair, 2.0), 1.0)": (
         "what an edge is divided by is not taken"
     ),
-    "finder.py: other_face, other_apart = (-2, -math.inf) if apart > reach else face_between(solids, b, a, reach)": (
-        "what is far is not looked at"
-    ),
+    "finder.py: other_face, other_distance = (-2, -math.inf) if distance > reach else separating_face(solids, b, a, "
+    "reach)": "blocks beyond the reach are not searched further",
     **{
         f"finder.py: {line}": "a direction may have any length"
         for line in (
             "over = face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))",
-            "other, way = edge_towards(solids, blocks[1], scaled(-2.0, normal))",
+            "other, other_edge = edge_towards(solids, blocks[1], scaled(-2.0, normal))",
         )
     },
     **{

@@ -49,7 +49,7 @@ def followed(system, duration, h, every):
     samples = Samples.room(last // every + 1, system, books)
     alone = threads_of(system.bodies, system.lines, 1)[0][0]
     advance(system, books, samples, Clock(0, h, every, 0, last + 1, last, math.inf, 0.0, (0.0, 0.0, 0.0)), alone)
-    return samples.taken(slice(-1)), system
+    return samples.chosen(slice(-1)), system
 
 
 def about_vertical(blocks, angle):

@@ -12,7 +12,7 @@ import numpy as np
 
 from .checks import named, require_flag, require_text, short_repr, warn_of
 from .files import quoted
-from .geoms import NO_LOAD, GeomPair, compiled_model, every_pair, geom_label, kept_apart
+from .geoms import NO_LOAD, GeomPair, compiled_model, every_pair, geom_label, reason_for_no_contact
 from .notes import (
     ENOUGH,
     SCATTER_WARNED_OF,
@@ -499,7 +499,7 @@ def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     model = pair.model
     yield from model_spoilers(model)
     yield from duplicates(pair)
-    if pair.explicit < 0 and (reason := kept_apart(pair)):
+    if pair.explicit < 0 and (reason := reason_for_no_contact(pair)):
         yield f"MuJoCo keeps these geoms apart, since {reason}; an explicit <pair> overrides that and lets them collide"
     mixed = Mixed.from_pair(pair)
     if mixed.margin != 0:

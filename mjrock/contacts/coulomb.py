@@ -82,8 +82,8 @@ class CoulombFriction:
         self._now = self.dimensions
         self._data: mujoco.MjData | None = None
         self._moving: dict[int, Array] = {}
-        self._given = np.zeros(model.nv)
-        self._left = np.zeros(model.nv)
+        self._applied = np.zeros(model.nv)
+        self._remaining = np.zeros(model.nv)
         self.sliding: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
@@ -121,7 +121,7 @@ class CoulombFriction:
         while pairs and (stopped := self._settle(data, pairs)):
             pairs -= stopped
             self.model.pair_dim[:] = self.dimensions
-            data.qfrc_applied[:] = self._left[:] = self._given
+            data.qfrc_applied[:] = self._remaining[:] = self._applied
         self.sliding, self._now = tuple(sorted(pairs)), np.array(self.model.pair_dim)
         return self.sliding
 
@@ -136,10 +136,10 @@ class CoulombFriction:
         self.model.pair_dim[:] = self.dimensions
         self.sliding, self._data, self._now = (), None, self.dimensions
         if data is not None:
-            if np.array_equal(data.qfrc_applied, self._left):
-                data.qfrc_applied[:] = self._given
-            self._given[:] = data.qfrc_applied
-            self._left[:] = data.qfrc_applied
+            if np.array_equal(data.qfrc_applied, self._remaining):
+                data.qfrc_applied[:] = self._applied
+            self._applied[:] = data.qfrc_applied
+            self._remaining[:] = data.qfrc_applied
 
     def _pressing(self, data: mujoco.MjData, least: float = 0.0) -> tuple[Integers, Integers, Integers]:
         """The contacts that press with more than the least force [N]: their numbers, those of their pairs, and those of
@@ -172,7 +172,7 @@ class CoulombFriction:
         model, h = self.model, float(self.model.opt.timestep)
         model.pair_dim[:] = self.dimensions
         model.pair_dim[list(pairs)] = 1
-        data.qfrc_applied[:] = self._given
+        data.qfrc_applied[:] = self._applied
         mujoco.mj_forward(model, data)
         number, owners, rows = self._pressing(data)
         chosen = np.isin(owners, list(pairs))
@@ -190,14 +190,14 @@ class CoulombFriction:
             size = np.sqrt((pull * middle).sum(axis=1))
             pull *= (data.efc_force[rows] / np.maximum(size, 1e-300))[:, None]
             force = -np.einsum("ij,ijk->k", pull, tangents)
-            data.qfrc_applied[:] = self._given + force
+            data.qfrc_applied[:] = self._applied + force
             if stops.any() or np.abs(force - before).max(initial=0) <= KNOWN * np.abs(force).max(initial=0):
                 break
             before = force
             mujoco.mj_forwardSkip(model, data, VELOCITY, 1)
         else:
             stops[:] = True  # beyond some coefficient friction raises the force by more than that gives
-        self._left[:] = data.qfrc_applied
+        self._remaining[:] = data.qfrc_applied
         return {int(pair) for pair in owners[stops]}
 
     def _surface(self, data: mujoco.MjData) -> dict[int, Array]:

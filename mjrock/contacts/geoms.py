@@ -248,7 +248,7 @@ class GeomPair:
         mass = model.body_mass[group]
         return np.array(mass @ data.xipos[group] / max(mass.sum(), mujoco.mjMINVAL))
 
-    def apart(self, data: mujoco.MjData) -> tuple[Array, float, Array | None]:
+    def separation(self, data: mujoco.MjData) -> tuple[Array, float, Array | None]:
         """The unit vector along which the first geom parts from the second, their distance [m], and the nearest points
         of both [m], shape (2, 3), or None where MuJoCo finds none.
 
@@ -258,15 +258,15 @@ class GeomPair:
         distance, ends = self._shortest(data)
         if (axis := self.axis(data, mujoco.mjtGeom.mjGEOM_PLANE)) is not None:
             return axis, distance, ends
-        apart = np.zeros(3) if ends is None else np.copysign(1.0, distance) * (ends[0] - ends[1])
-        if np.linalg.norm(apart) < TOUCHING_SHARE * np.linalg.norm(between):
+        separation = np.zeros(3) if ends is None else np.copysign(1.0, distance) * (ends[0] - ends[1])
+        if np.linalg.norm(separation) < TOUCHING_SHARE * np.linalg.norm(between):
             place = np.array(data.geom_xpos[self.geoms[0]])
             data.geom_xpos[self.geoms[0]] += BESIDE_THE_LINE * between
             aside, moved = self._shortest(data)
             data.geom_xpos[self.geoms[0]] = place
-            apart = np.zeros(3) if moved is None else np.copysign(1.0, aside) * (moved[0] - moved[1])
+            separation = np.zeros(3) if moved is None else np.copysign(1.0, aside) * (moved[0] - moved[1])
         up = np.array((0.0, 0.0, 1.0))
-        vector = next(vector for vector in (apart, between, up) if np.any(np.abs(vector) > 1e-12))
+        vector = next(vector for vector in (separation, between, up) if np.any(np.abs(vector) > 1e-12))
         return np.array(vector / np.linalg.norm(vector)), distance, ends
 
     def axis(self, data: mujoco.MjData, kind: mujoco.mjtGeom) -> Array | None:
@@ -307,7 +307,7 @@ class GeomPair:
         return (distance, ends.reshape(2, 3)) if known else (0.0, None)
 
 
-def kept_apart(pair: GeomPair) -> str:
+def reason_for_no_contact(pair: GeomPair) -> str:
     """Why MuJoCo makes no contact of two geoms without an explicit pair, in words; nothing if it makes one.
 
     Bodies that are welded together without joints are one body. A parent that is the world, or is welded to it, meets
@@ -333,7 +333,7 @@ def kept_apart(pair: GeomPair) -> str:
 
 def makes(pair: GeomPair) -> bool:
     """Whether MuJoCo makes contacts of two geoms, by an explicit pair or without one."""
-    return pair.explicit >= 0 or (pair.inverse_weight > 0 and not kept_apart(pair))
+    return pair.explicit >= 0 or (pair.inverse_weight > 0 and not reason_for_no_contact(pair))
 
 
 def every_pair(model: mujoco.MjModel, *, candidates: bool = True) -> Iterator[GeomPair]:
@@ -348,5 +348,5 @@ def every_pair(model: mujoco.MjModel, *, candidates: bool = True) -> Iterator[Ge
         kinds, masks = model.geom_contype[first:], model.geom_conaffinity[first:]
         for later in np.flatnonzero(kinds[0] & masks[1:] | kinds[1:] & masks[0]).tolist():
             pair = GeomPair(model, (first, first + 1 + later))
-            if frozenset(pair.geoms) not in listed and pair.inverse_weight > 0 and not kept_apart(pair):
+            if frozenset(pair.geoms) not in listed and pair.inverse_weight > 0 and not reason_for_no_contact(pair):
                 yield pair

@@ -29,7 +29,7 @@ from .notes import (
     shape_spoilers,
     turned,
     uneven,
-    unknown,
+    unknown_landing,
 )
 from .rebound import rebound_at, rebound_restitution
 from .row_of_model import Mixed, ModelRow
@@ -206,7 +206,7 @@ def _notes(
             f"and the mass {found.mass:.2g} kg, and all that moves weighs {total:.3g} kg"
         )
         return
-    yield from unknown(pair, pose)
+    yield from unknown_landing(pair, pose)
     if found.k > 0:
         yield from holding(pose, met.effective, found.k * met.points, found.xi)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):

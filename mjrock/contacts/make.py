@@ -21,7 +21,6 @@ from .notes import (
     UNSOUND,
     ContactWarning,
     few_iterations,
-    giving_way,
     holding,
     other_keyframes,
     resolving_step,
@@ -29,7 +28,8 @@ from .notes import (
     shape_spoilers,
     stiffest,
     turned,
-    unknown,
+    unknown_landing,
+    yielding_joints,
 )
 from .rebound import MOST_PULL, falling_damping, rebound_damping
 from .row_of_model import Grip, Mixed, ModelRow, unused
@@ -428,10 +428,10 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
 
 def beside(contact: PairContact, neighbours: Neighbours, made: Mapping[frozenset[int], PairContact]) -> PairContact:
     """The contact with `remarks` on what lands with it: what is not `made` the same, and what is not level."""
-    label = {pair: " on ".join(pair.labels) for pair in (*neighbours.level, *neighbours.apart)}
+    label = {pair: " on ".join(pair.labels) for pair in (*neighbours.level, *neighbours.separate)}
     others = {pair: made.get(frozenset(pair.geoms)) for pair in label}
     unlike = [label[pair] for pair in neighbours.level if not (other := others[pair]) or not contact.is_like(other)]
-    apart = [label[pair] for pair in neighbours.apart if others[pair]]
+    apart = [label[pair] for pair in neighbours.separate if others[pair]]
     level = f"give the pose in which the bodies stand level, not {contact.pose}"
     remarks = []
     if unlike:
@@ -483,8 +483,8 @@ def _remarks(
     assert law.k is not None
     xi, speed = c / (2 * math.sqrt(law.k * met.share)), request.speed or 1.0
     if request.at is None:
-        yield from unknown(pair, pose)
-    yield from giving_way(pair, pose, met, law, xi, speed)
+        yield from unknown_landing(pair, pose)
+    yield from yielding_joints(pair, pose, met, law, xi, speed)
     yield from holding(pose, met.effective, law.k * met.points, xi, speed)
     if request.c is None and request.at is None:
         yield from other_keyframes(pair, pose, met, request.contacts, law.friction)

@@ -290,7 +290,7 @@ class Pose:
         along = pair.axis(self.data, mujoco.mjtGeom.mjGEOM_HFIELD) if self.normal is None else self.normal
         if along is not None and ground is not None and (found := ground.drop(pair, along)):
             return found
-        away, distance, ends = pair.apart(self.data)
+        away, distance, ends = pair.separation(self.data)
         away = away if along is None else along
         if ground is not None:
             points = ground.points(pair, away, distance)
@@ -342,7 +342,7 @@ class Pose:
         return Trial(self.model, self.data)
 
     @cached_property
-    def held(self) -> PoseConstraints:
+    def constraints(self) -> PoseConstraints:
         """The constraints of the pose."""
         return PoseConstraints(self.model, self.data)
 
@@ -370,12 +370,12 @@ class Neighbours(NamedTuple):
     Args:
         level: those that land together with it, and share the mass.
         late: how much sooner or later they touch [m], where that is more than on a level face, otherwise zero.
-        apart: those that land before or after it.
+        separate: those that land before or after it.
     """
 
     level: tuple[GeomPair, ...] = ()
     late: float = 0.0
-    apart: tuple[GeomPair, ...] = ()
+    separate: tuple[GeomPair, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -432,7 +432,7 @@ def meeting_of_geoms(
         places = pair.centre(pose.data, pair.bodies[0]), pair.centre(pose.data, pair.bodies[1])
     else:
         places = first.mean(axis=0), second.mean(axis=0)
-    effective = effective_mass(pair, pose.held, here.away, places, law.together(count))
+    effective = effective_mass(pair, pose.constraints, here.away, places, law.together(count))
     return PairMeeting(count, effective, others)
 
 

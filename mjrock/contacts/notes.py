@@ -198,7 +198,7 @@ def rounded_down(value: float, digits: int = 2) -> str:
     return f"{float(Context(prec=digits, rounding=ROUND_DOWN).create_decimal_from_float(value)):g}"
 
 
-def unknown(pair: GeomPair, pose: Pose) -> Iterator[str]:
+def unknown_landing(pair: GeomPair, pose: Pose) -> Iterator[str]:
     """A sentence where the pose does not show how two geoms land."""
     here = pose.landing(pair)
     if pose.normal is None and int(mujoco.mjtGeom.mjGEOM_SDF) in pose.model.geom_type[list(pair.geoms)]:
@@ -332,7 +332,7 @@ def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
     return f"{words} {mujoco.mj_id2name(model, kind, number) or f'[{number}]'!s}".strip()
 
 
-def giving_way(pair: GeomPair, pose: Pose, met: PairMeeting, law: PointLaw, xi: float, speed: float) -> Iterator[str]:
+def yielding_joints(pair: GeomPair, pose: Pose, met: PairMeeting, law: PointLaw, xi: float, speed: float) -> Iterator[str]:
     """A sentence where joints give way within a blow, so that the mass at its end is another.
 
     Args:
@@ -357,7 +357,7 @@ def giving_way(pair: GeomPair, pose: Pose, met: PairMeeting, law: PointLaw, xi: 
         before.append(point)
         after.append(later.data.xpos[body] + turned @ (point - pose.data.xpos[body]))
     first, last = (
-        effective_mass(pair, each.held, here.away, (points[0], points[1]), law.together(met.points)).mass
+        effective_mass(pair, each.constraints, here.away, (points[0], points[1]), law.together(met.points)).mass
         for each, points in ((pose, before), (later, after))
     )
     if max(last / first, first / last) > FOREIGN:

@@ -42,7 +42,7 @@ def inlined(function: Function) -> Function:
     return function
 
 
-Given = Array | float
+Numbers = Array | float
 """A number, or an array of them."""
 
 
@@ -173,7 +173,7 @@ def contact_parameters(
 
 
 def contact_parameters(
-    k: Given, c: Given, *, timestep: Given, inverse_weight: Given, newmark_beta: float = 0.25
+    k: Numbers, c: Numbers, *, timestep: Numbers, inverse_weight: Numbers, newmark_beta: float = 0.25
 ) -> ContactParameters | ManyContactParameters:
     """MuJoCo's parameters for a unilateral spring and dashpot, integrated as Newmark's method does.
 
@@ -210,7 +210,7 @@ def contact_parameters(
     return ContactParameters(solref=(stiffness, damping), solimp=(d, d, 0.001, 0.5, 2.0), inertia=inertia)
 
 
-def _many_parameters(given: dict[str, Given], newmark_beta: float) -> ManyContactParameters:
+def _many_parameters(given: dict[str, Numbers], newmark_beta: float) -> ManyContactParameters:
     """The parameters of arrays of contacts, one by one."""
     arrays = [require_reals(name, value, "numbers or arrays of numbers") for name, value in given.items()]
     try:

@@ -50,7 +50,7 @@ def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
     try:
         found = trial.run(cap, searches)
     except mujoco.FatalError:  # the memory of the model is too small for the contacts
-        found = Found()
+        found = TrialResult()
     if not found.carried:
         return SolverNeed(*own, tried=False)
     if found.most < cap:
@@ -66,7 +66,7 @@ def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
 
 
 @dataclass
-class Found:
+class TrialResult:
     """What a trial finds.
 
     Args:
@@ -129,9 +129,9 @@ class SolverTrial:
         self.pressed = [point for each in _that_meet(pose.model, landed) for point in _points(pose, *each)]
         self.named = np.sort([contact.ids for contact in contacts], axis=1)
 
-    def run(self, cap: int, searches: int) -> Found:
+    def run(self, cap: int, searches: int) -> TrialResult:
         """Step with at most `cap` iterations and `searches` line searches, and compare with the steps of the model."""
-        found = Found()
+        result = TrialResult()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             for speed in (MOVING, -MOVING):  # what parts from its contact in one of them meets it in the other
@@ -143,11 +143,11 @@ class SolverTrial:
                     turns, right = self._right(data, cap, searches)
                     if not np.abs(data.qacc).max(initial=0) < LARGEST_ACCELERATION:
                         break
-                    found.most = max(found.most, turns)
-                    found.enough &= _alike(fewer, right)
-                    found.carried |= self._carry(data)
+                    result.most = max(result.most, turns)
+                    result.enough &= _alike(fewer, right)
+                    result.carried |= self._carry(data)
                     mujoco.mj_Euler(self.model, data)
-        return found
+        return result
 
     def _right(self, data: mujoco.MjData, cap: int, searches: int) -> tuple[int, Array]:
         """Iterations of the model's solver, of `cap` with `searches` line searches, and forces of Newton's method [N].

@@ -36,7 +36,7 @@ def system_of(scene: Scene, *, ended: bool = False) -> System:
         edges = add_joints(lines, scene)
     acting = (), np.zeros(0, dtype=np.int64), Ground.from_motions(None), moving((), d)
     system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), no_laws(d), *acting)
-    return at_pose(system.with_ways(), scene.potential.unmoved.reshape(n, -1))
+    return at_pose(system.with_room_for_friction(), scene.potential.unmoved.reshape(n, -1))
 
 
 def lines_of(scene: Scene) -> Rows:

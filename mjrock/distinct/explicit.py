@@ -124,7 +124,7 @@ def solve_explicit(
     integration = integrate(setup, books, samples, grid, threads)
     stats = step_stats(setup, grid, integration, stepping.stepping())
     kept = slice(integration.samples)
-    samples = samples.taken(kept).since_the_start()
+    samples = samples.chosen(kept).since_the_start()
     if setup.search is not None:
         stats["overlap"] = checked_overlap(setup, case, samples.pose, grid.times()[kept], grid.h)
     checked = grid.checks(integration.steps)

@@ -296,9 +296,9 @@ def settle_step(
     """Finish a step, by one thread for all: rigid friction, touches and links, and the records of a sample."""
     energy, kick = samples.energy[step.kept], step.kick
     stick(system, books.active, sticking, kick)
-    taken, put_in = settle_touches(system, books, touched, kick)
+    stored_energy, put_in = settle_touches(system, books, touched, kick)
     by_links, put_in_by_links = settle_all(system.links, system, books, kick)
-    energy.elastic += taken + by_links
+    energy.elastic += stored_energy + by_links
     energy.ground += put_in + put_in_by_links
     if samples.dashpots.shape[1] > 0 or len(system.supports.moved) > 0:
         rubbed, put_in = book_rubbing(system, books, sticking)

@@ -104,4 +104,4 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
     links = tuple(table.going_on(before) for table, before in zip(system.links, carried.links, strict=True))
     laws = tuple(law.going_on(now) for law, now in zip(carried.laws, system.laws, strict=True))
     carried = system._replace(bodies=carried.bodies, lines=carried.lines, laws=laws, links=links)
-    return carried.with_ways()
+    return carried.with_room_for_friction()

@@ -127,7 +127,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
 
 def kept_forces(run: Run, kept: Integers) -> Forces | None:
     """The forces of a run at some of its samples, if they were kept."""
-    samples = run.samples.taken(kept)
+    samples = run.samples.chosen(kept)
     if not samples.held.shape[1]:
         return None
     pulled = run.forces_of(-samples.pulled, driven=False)
@@ -218,7 +218,7 @@ def advice(step: float, share: float, wanted: float) -> str:
 
 def ledger_of(run: Run, kept: Integers) -> Ledger:
     """The ledger of a run at some of its samples."""
-    samples = run.samples.taken(kept)
+    samples = run.samples.chosen(kept)
     energy: dict[str, Any] = {name: np.asarray(samples.energy[name]) for name in ENERGY.names or ()}
     booked: dict[str, Any] = {"dashpots": {}, "actuators": {}, "ties": {}, "broken": {}}
     for table, row, name in run.links:

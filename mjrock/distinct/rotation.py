@@ -51,16 +51,16 @@ def by_body(flat: Callable[..., Any], deep: Callable[..., Any]) -> Callable[...,
 
 
 @inlined
-def _far_in_plane(body: Row) -> bool:
+def _turned_far_in_plane(body: Row) -> bool:
     return bool(body.rotation[1] > EIGHTH)
 
 
 @inlined
-def _far_in_space(body: Row) -> bool:
+def _turned_far_in_space(body: Row) -> bool:
     return bool(body.rotation[0, 0] + body.rotation[1, 1] + body.rotation[2, 2] < -2 * EIGHTH)
 
 
-may_face_away = by_body(_far_in_plane, _far_in_space)
+may_face_away = by_body(_turned_far_in_plane, _turned_far_in_space)
 """Whether a body has turned by more than an eighth of a turn. The faces of two bodies that have not still face each
 other."""
 
@@ -214,8 +214,8 @@ def rotated(by: Vector, a: Vector) -> Vector:
     else:
         half = math.sin(0.5 * angle)
         sine, versine = math.sin(angle) / angle, 2 * half * half / square
-    across = spun(by, a)
-    return plus(a, plus(scaled(sine, across), scaled(versine, spun(by, across))))
+    cross_product = spun(by, a)
+    return plus(a, plus(scaled(sine, cross_product), scaled(versine, spun(by, cross_product))))
 
 
 @inlined

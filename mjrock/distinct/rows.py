@@ -23,9 +23,9 @@ POINT_ON_FIXED_BLOCK = -2
 """Number of the face of a line where the point is on a fixed block and the face on the body."""
 Fields = list[Any]
 """Names of numbers, and of vectors with how many numbers they have."""
-TAKEN_BY_LAWS = ("tension", "slip", "crushing", "joint_ends", "encounter_ends")
-"""What laws of joints have taken in tension, slip and crushing, and lines of joints and of encounters at the ends of
-faces."""
+DISSIPATED_BY_LAWS = ("tension", "slip", "crushing", "joint_ends", "encounter_ends")
+"""Energy that laws of joints dissipate in tension, slip and crushing, and lines of joints and of other contacts at the
+ends of faces."""
 
 
 class Kinds(NamedTuple):
@@ -35,10 +35,10 @@ class Kinds(NamedTuple):
         body: a rigid body.
         line: a contact line, in space a contact point: a point of a body on the face of another body or fixed block.
         edge: an edge of a face, of which one in the plane has two.
-        way: a direction along its face of a line that sticks rigidly. A line has d - 1 of them.
+        way: a tangential direction of a line that sticks rigidly. A line has d - 1 of them.
         total: what is booked for all lines together [J]: `friction`, what is in the shear springs included, `ground`,
-            the work of ground and supports, and `TAKEN_BY_LAWS`; `push` is the acceleration of the ground in the last
-            step [m/s2].
+            the work of ground and supports, and `DISSIPATED_BY_LAWS`; `push` is the acceleration of the ground in the
+            last step [m/s2].
         apart: force and moment of a line on a body that wait until all threads have pressed, see `thread`.
     """
 
@@ -59,7 +59,7 @@ def kinds(d: int) -> Kinds:
         _line(d, s),
         _edge(d),
         _way(d, s),
-        [*numbers("friction", "ground", *TAKEN_BY_LAWS), *vectors(d, "push")],
+        [*numbers("friction", "ground", *DISSIPATED_BY_LAWS), *vectors(d, "push")],
         [*integers("body"), *vectors(d, "force"), *vectors(s, "moment")],
     )
     return Kinds(*(np.dtype(kind) for kind in fields))
@@ -143,11 +143,11 @@ def _way(d: int, s: int) -> Fields:
     return [
         *integers("body", "face", "support"),  # those of its line, so that sweeps need no lines
         *numbers("limit"),  # the most that the face holds in this step [N s]
-        *vectors(d, "way"),  # a direction along the face
+        *vectors(d, "way"),  # the tangential direction
         *vectors(s, "lever", "lever_on_face"),  # moment of a unit impulse about the two centroids [m]
         *vectors(s, "spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
-        *numbers("compliance", "coupling"),  # slip along the way that it makes, and along the other way [1/kg]
-        *numbers("stiffness", "shared"),  # impulse that stops a slip of 1 m/s along the way, and along the other [kg]
+        *numbers("compliance", "coupling"),  # slip by a unit impulse along its direction, along the other [1/kg]
+        *numbers("stiffness", "shared"),  # impulse that stops a unit slip along its direction, along the other [kg]
         *numbers("impulse", "slip"),  # [N s], and the slip before the forces act [m/s]
         *numbers("drift"),  # slip that turning bodies gain from the pose to the middle of the step [m/s]
     ]

@@ -29,7 +29,7 @@ wall in space has six times as many springs as unknowns."""
 def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
     lines, bodies = stiffest_lines(system), len(system.bodies)
-    rates = [line_rates(lines, way, bodies) for way in ways_of(np.asarray(lines["normal"]))]
+    rates = [line_rates(lines, direction, bodies) for direction in directions_of(np.asarray(lines["normal"]))]
     links = [table for table in system.links if any(of.any() for of in table.springs())]
     rates += [table.rates(system.bodies) for table in links]
     lengths, root = csr_array(vstack(rates)), root_of_masses(system)
@@ -78,26 +78,26 @@ def highest(rates: csr_array, weights: Array, root: csr_array) -> float:
         weights: W, of the springs or dashpots, shape (springs,).
         root: R with R R^T = M^-1.
     """
-    acting = np.flatnonzero(weights)
-    if not acting.size:
+    stiff = np.flatnonzero(weights)
+    if not stiff.size:
         return 0.0
-    scaled = times(np.sqrt(weights[acting]), rates[acting]) @ root
-    matrix = scaled.T @ scaled if len(acting) > MANY_SPRINGS else scaled @ scaled.T
-    if len(acting) <= 20:
+    scaled = times(np.sqrt(weights[stiff]), rates[stiff]) @ root
+    matrix = scaled.T @ scaled if len(stiff) > MANY_SPRINGS else scaled @ scaled.T
+    if len(stiff) <= 20:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(matrix.shape[0])
     largest = scipy.sparse.linalg.eigsh(matrix, 1, which="LA", tol=1e-3, v0=start, return_eigenvectors=False)[0]
     return 1.01 * float(largest)  # an allowance for the tolerance
 
 
-def ways_of(normal: Array) -> tuple[Array, ...]:
+def directions_of(normal: Array) -> tuple[Array, ...]:
     """Unit vectors along the normals of lines, and along their faces one in the plane and two in space, (m, d) each."""
     if normal.shape[1] == 2:
         return normal, np.column_stack([normal[:, 1], -normal[:, 0]])
     return normal, *np.moveaxis(tangent_axes(normal), 1, 0)
 
 
-def line_rates(lines: Rows, way: Array, bodies: int) -> csr_array:
+def line_rates(lines: Rows, directions: Array, bodies: int) -> csr_array:
     """Rates at which the points of lines move over their faces in directions, for unit velocities at rest."""
     arms = np.asarray(lines["at"]), np.asarray(lines["origin"])
-    return rates_of(np.column_stack([lines["body"], lines["face"]]), arms, way, bodies)
+    return rates_of(np.column_stack([lines["body"], lines["face"]]), arms, directions, bodies)

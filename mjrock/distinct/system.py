@@ -9,23 +9,23 @@ import numpy as np
 from ..geometry.frames import PLANE, SPACE
 from ..quantities import Array, Integers
 from ..scene.course import Ground
-from .rows import TAKEN_BY_LAWS, Rows, joined, kinds, rows
+from .rows import DISSIPATED_BY_LAWS, Rows, joined, kinds, rows
 from .supports import Supports
 from .thread import Thread, threads_of
 
 Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
 
-HELD_ENERGIES, WORK = ("kinetic", "potential", "elastic"), ("friction", "ground", "driven", *TAKEN_BY_LAWS)
-ENERGY = np.dtype([(name, float) for name in (*HELD_ENERGIES, *WORK)])
-"""Energy at a sample or a check, and the work since the start [J]: what friction has taken, what ground and supports
-and what actuators have put in, and what `rows.TAKEN_BY_LAWS` names."""
+STATE_ENERGIES, WORK = ("kinetic", "potential", "elastic"), ("friction", "ground", "driven", *DISSIPATED_BY_LAWS)
+ENERGY = np.dtype([(name, float) for name in (*STATE_ENERGIES, *WORK)])
+"""Energy at a sample or a check, and the work since the start [J]: what friction has dissipated, what ground and
+supports and what actuators have put in, and what `rows.DISSIPATED_BY_LAWS` names."""
 
 
 class System(NamedTuple):
-    """Bodies with their motion, contact lines, and all that acts on them. `ways` has room for d - 1 rows of each line
-    that sticks rigidly. `laws` has a table for each law of joints beside the dry one, `links` one for each kind of
-    links, and `guided` the body of each actuator."""
+    """Bodies with their motion, contact lines, and all that acts on them. `ways` has room for the d - 1 tangential
+    directions of each line that sticks rigidly. `laws` has a table for each law of joints beside the dry one, `links`
+    one for each kind of links, and `guided` the body of each actuator."""
 
     axes: tuple[int, ...]
     bodies: Rows
@@ -38,8 +38,8 @@ class System(NamedTuple):
     ground: Ground
     supports: Supports
 
-    def with_ways(self) -> System:
-        """The system with room for the ways of all its lines, if one of them sticks rigidly."""
+    def with_room_for_friction(self) -> System:
+        """The system with room for the tangential directions of all its lines, if one of them sticks rigidly."""
         needed = (len(self.axes) - 1) * len(self.lines)
         if len(self.ways) >= needed or not np.isinf(self.lines["k_s"]).any():
             return self
@@ -154,7 +154,7 @@ class Samples(NamedTuple):
         parts = {name: (n, getattr(self, name)) for name, n in counts.items()}
         return self._replace(**{name: np.zeros((len(old), n, *old.shape[2:])) for name, (n, old) in parts.items()})
 
-    def taken(self, which: slice | Integers) -> Samples:
+    def chosen(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all checks."""
         kept = {name: part[which] for name, part in self._asdict().items() if name != "checks"}
         return self._replace(**kept)

@@ -79,11 +79,11 @@ def contact_work(scene: Scene, steps: Steps) -> Work:
 def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
     """The ledger of a run."""
     windows, broken = steps.windows, breaks(scene.ties, steps.pose)
-    stored, taken = scene.accounts(windows.pose, windows.velocity, broken)
+    stored, dissipated = scene.accounts(windows.pose, windows.velocity, broken)
     lost = lost_by_breaking(scene, broken, len(steps.t))
     stored[:, 1] = scene.accounts(windows.placed, windows.velocity)[0][:, 1]
     dashpots, friction, _ = contact_work(scene, steps)
-    friction[:-1] -= given_back(scene, steps)
+    friction[:-1] -= regained(scene, steps)
     dampers = dissipated_by_dampers(scene.dampers, steps.pose, windows.mean, windows.width, steps.record.damping)
     dashpots = np.concatenate([dashpots, dampers], axis=1)
     return Ledger(
@@ -97,7 +97,7 @@ def ledger(scene: Scene, course: Course, steps: Steps) -> Ledger:
         },
         friction=_since_release(friction),
         ground=_since_release(ground_work(scene, course, steps)),
-        ties=dict(zip(scene.links.sprung.names, (taken - taken[0]).T, strict=True)),
+        ties=dict(zip(scene.links.sprung.names, (dissipated - dissipated[0]).T, strict=True)),
         broken={name: account - account[0] for name, account in lost.items()},
     )
 
@@ -109,11 +109,11 @@ def lost_by_breaking(scene: Scene, broken: Integers, steps: int) -> dict[str, Ar
     return {links.names[i]: np.where(np.arange(steps) >= broken[i], elastic[i], 0.0) for i in may}
 
 
-def given_back(scene: Scene, steps: Steps) -> Array:
+def regained(scene: Scene, steps: Steps) -> Array:
     """Energy that ties and constant forces regain after each step but the last [J], shape (steps - 1,).
 
-    An edge that sticks creeps a little in every step, and is put back to where it stuck. What friction has taken on the
-    way is then there again. Otherwise it would add up under a thrust that a resting wall bears for long.
+    An edge that sticks creeps a little in every step, and is put back to where it stuck. What friction has taken by
+    then is there again. Otherwise it would add up under a thrust that a resting wall bears for long.
     """
     pose = np.empty((2 * len(steps.t) - 1, steps.pose.shape[1]))
     pose[::2], pose[1::2] = steps.pose, moved(steps.pose, steps.h[:, None] * steps.record.after, scene.freedom)[:-1]
@@ -200,15 +200,15 @@ def take_rows(points: Points, step: Step, room: LedgerRoom) -> float:
 
 
 @inlined
-def slip_along(places: Places, i: int, frames: Array, v: Array, way: Array) -> float:
-    """Slip of contact i for velocities v along that for other velocities, which is the way of its friction [m/s].
+def slip_along(places: Places, i: int, frames: Array, v: Array, other: Array) -> float:
+    """Slip of contact i for velocities v, along the slip for other velocities, against which friction acts [m/s].
 
-    In the plane there is one way. In space friction of the rows is against the slip after the step, and Coulomb's
+    In the plane there is one direction. In space friction of the rows is against the slip after the step, and Coulomb's
     against that at the pose.
     """
     meets = where_friction_acts(places, meeting(places, i, frames))
     velocity = relative_velocity(places, i, meets, frames, v)
-    return dot(slip_of(meets.normal, relative_velocity(places, i, meets, frames, way)).way, velocity)
+    return dot(slip_of(meets.normal, relative_velocity(places, i, meets, frames, other)).direction, velocity)
 
 
 class ContactForces(NamedTuple):

@@ -83,8 +83,8 @@ def _gather(points: Points, record: Record, windows: Windows, kinds: StepKinds, 
                 continue
             meets = where_friction_acts(places, meeting(places, i, room.frames))
             slipping = room.middle if now.coulomb else record.after[n]
-            way = slip_of(meets.normal, relative_velocity(places, i, meets, room.frames, slipping)).way
-            force = plus(scaled(now.row, meets.normal), scaled(now.along, way))
+            direction = slip_of(meets.normal, relative_velocity(places, i, meets, room.frames, slipping)).direction
+            force = plus(scaled(now.row, meets.normal), scaled(now.along, direction))
             body, joint = places.body[i], places.joint[i]
             at = plus(vector(into.rest, body, axes), plus(place(room.frames, body, axes), meets.arm))
             load = into.loads[row, joint]

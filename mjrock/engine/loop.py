@@ -107,7 +107,7 @@ def take_mean(ground_response: GroundResponse, ground: Ground, t: float, h: floa
 
 LYING = math.sin(0.5 * ON_ITS_FACE) ** 2
 """x^2 + y^2 of the quaternion of a body of space whose axis that stood at rest lies on the ground [-]."""
-FAR = 1e9
+SLACK_FOR_GOOD = 1e9
 """Length up to which a tie that has broken is slack [m]."""
 
 
@@ -352,7 +352,7 @@ def settle_ties(memory: EngineArrays, setting: Setting, frames: Array) -> None:
     """Let ties yield and break at a pose. For the engine, one that has broken is slack up to any length."""
     for i in range(len(setting.ties.k)):
         if snaps(setting.ties, i, frames, memory.velocity):
-            memory.plastic[memory.upper[i]] = FAR
+            memory.plastic[memory.upper[i]] = SLACK_FOR_GOOD
         stretch(setting.ties, i, frames, memory.velocity)
 
 

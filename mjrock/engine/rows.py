@@ -3,8 +3,8 @@
 A friction row has no spring, only a dashpot, and the inertia of its normal row times impratio. With a damping rate of
 1/h, solreffriction = (~0, -d/h), it stops the slip within one step, but for the share of the force that its inertia
 leaves: under a load F along its face a contact that sticks creeps at F h / m_f, with m_f the inertia of its friction
-row, `Points.held` times max(1, growth h). In steps longer than 1 / growth it creeps no faster. MuJoCo has one
-impratio for all contacts. It is the largest with which no friction row has more inertia than it should.
+row, `Points.friction_inertia` times max(1, growth h). In steps longer than 1 / growth it creeps no faster. MuJoCo has
+one impratio for all contacts. It is the largest with which no friction row has more inertia than it should.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Points(NamedTuple):
         weight: sum of MuJoCo's inverse weights of the two bodies W [1/kg], shape (m,).
         overdamped, resolved: c h W from which a dashpot is stiff for a step with ringing and for one without, see
             `solref.row` [-], shape (m,).
-        held: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
+        friction_inertia: inertia that the friction rows should have [kg], zero where there is no friction, shape (m,).
         growth: how it grows with the step: by the factor growth h, where that is more than one [1/s].
         bears: penetration of each at rest [m], zero where it is open, shape (m,).
         opened, overlapped: largest gap and deepest penetration that a run follows [m].
@@ -42,7 +42,7 @@ class Points(NamedTuple):
     weight: Array
     overdamped: Array
     resolved: Array
-    held: Array
+    friction_inertia: Array
     growth: float
     bears: Array
     opened: float
@@ -74,7 +74,7 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
         weight=weight,
         overdamped=resolved if joints else np.full_like(resolved, method.overdamped),
         resolved=resolved,
-        held=frozen(np.where(scene.contacts.friction > 0, held, 0.0)),
+        friction_inertia=frozen(np.where(scene.contacts.friction > 0, held, 0.0)),
         growth=0.0 if np.any(scene.contacts.holds) else method.held_growth * scene.rocking_frequency,
         bears=scene.bears,
         opened=scene.limits.reach,
@@ -122,9 +122,9 @@ def row_of(points: Points, i: int, step: Step) -> tuple[float, float]:
 @inlined
 def impratio_of(points: Points, i: int, normal: float, h: float) -> float:
     """Inertia that the friction row of contact i should have in a step h, over that of its normal row [-]."""
-    if points.held[i] == 0:
+    if points.friction_inertia[i] == 0:
         return math.inf
-    return max(points.growth * h, 1.0) * points.held[i] / normal
+    return max(points.growth * h, 1.0) * points.friction_inertia[i] / normal
 
 
 @inlined
@@ -135,7 +135,7 @@ def set_rows(points: Points, step: Step, rows: ContactRows) -> float:
         dashpot, normal = row_of(points, i, step)
         rows.solref[i, 0], rows.solref[i, 1], d = pair_values(k[i], dashpot, normal, points.weight[i])
         rows.solimp[i, 0] = rows.solimp[i, 1] = d
-        if points.held[i] > 0:
+        if points.friction_inertia[i] > 0:
             rows.solreffriction[i, 0], rows.solreffriction[i, 1] = -1e-30, -d / step.h
         impratio = min(impratio, impratio_of(points, i, normal, step.h))
     return impratio if impratio < math.inf else 1.0

@@ -39,7 +39,7 @@ class EngineRun:
         problem, scene, course: the problem, the structure, and what happened to it.
         steps: what the engine did.
         energy: at the steps, above the scene at rest [J], shape (steps,).
-        taken: what ties have taken up to each step [J], shape (steps, t).
+        dissipated: by ties up to each step [J], shape (steps, t).
         broken: the step from which each tie no longer acts, see `mjrock.scene.potential.breaks`.
         reading: what is read from the motion, of the wall or of the joints.
         scale: energy of the release, of the springs at rest, or at most where they start as drawn, and of what the
@@ -52,7 +52,7 @@ class EngineRun:
     course: Course
     steps: Steps
     energy: Array
-    taken: Array
+    dissipated: Array
     broken: Integers
     reading: Reading
     scale: float
@@ -66,7 +66,7 @@ class EngineRun:
             StepError: if energy appears from nowhere before a wall cannot come back, or before the first block falls.
         """
         broken, nq, nv = breaks(scene.ties, steps.pose), scene.freedom.nq, scene.freedom.nv
-        stored, taken = scene.accounts(steps.pose, steps.velocity, broken)
+        stored, dissipated = scene.accounts(steps.pose, steps.velocity, broken)
         energy = stored.sum(axis=1) - scene.rest_energies.sum()
         bodies = len(scene.bodies.names)
         motion = SampledMotion(steps.pose.reshape(-1, bodies, nq), steps.velocity.reshape(-1, bodies, nv), energy)
@@ -81,7 +81,7 @@ class EngineRun:
         gain = None
         if reading.joints is not None:
             gain = gain_of_falling(scene, steps, work, count, scale + float(stored[:, 0].max()))
-        return cls(problem, scene, course, steps, energy, taken, broken, reading, scale, gain)
+        return cls(problem, scene, course, steps, energy, dissipated, broken, reading, scale, gain)
 
     def response(
         self, spacing: float | None, stride: int, want_ledger: bool, want_forces: bool, settings: Settings
@@ -109,7 +109,7 @@ class EngineRun:
     def plastic(self) -> dict[str, Plastic]:
         """What each tie has yielded when the duration is over."""
         steps, links, duration = self.steps, self.scene.links.sprung, self.course.duration
-        energy = np.array([np.interp(duration, steps.t, taken) for taken in self.taken.T])
+        energy = np.array([np.interp(duration, steps.t, dissipated) for dissipated in self.dissipated.T])
         when = np.append(steps.windows.t, np.inf)[np.minimum(self.broken, len(steps.t))]
         when[when > duration] = np.inf
         gone = np.isfinite(when)
@@ -179,8 +179,8 @@ def balance(scene: Scene, steps: Steps, work: Array, marks: Integers) -> Array:
     yields = bool(np.isfinite(scene.links.sprung.law["strength"]).any())  # a tie yields between the marks too
     at = np.arange(marks[-1] + 1) if yields else marks
     broken = (breaks(scene.ties, steps.pose),) if yields else ()
-    stored, taken = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
-    own = stored.sum(axis=1) + taken.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
+    stored, dissipated = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
+    own = stored.sum(axis=1) + dissipated.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
     return np.asarray(own[marks] if yields else own)
 
 

@@ -32,7 +32,7 @@ from .touches import ROUNDING
 SMOOTH, ROUGH = 1, 3
 """MuJoCo's dimension of a contact without and with rows of friction."""
 SLOWEST = 1e-300
-"""Slip below which it has no way [m/s]."""
+"""Slip below which it has no direction [m/s]."""
 STAGE_VELOCITY = 2
 """mjSTAGE_VEL: positions and velocities are as in the last look, and only forces have changed."""
 
@@ -44,9 +44,9 @@ class Sliding(NamedTuple):
         coulomb: whether contacts that slide obey Coulomb's law; otherwise all have their rows.
         method: the constants of the method.
         slides, slid: which contacts slide in this step, and which slid in the last, shape (m,).
-        force: friction of each that does, along its way on the body that carries the point [N], shape (m,). The way is
-            (nz, -nx) in the plane. In space it is that of the slip, and the force is negative.
-        way: unit vectors of the ways, shape (m, d).
+        force: friction of each that does, along its direction, on the body that carries the point [N], shape (m,).
+        direction: unit vectors along the faces, shape (m, d): (nz, -nx) in the plane, and in space that of the slip,
+            along which the friction is negative.
     """
 
     coulomb: bool
@@ -54,21 +54,21 @@ class Sliding(NamedTuple):
     slides: Flags
     slid: Flags
     force: Array
-    way: Array
+    direction: Array
 
     @classmethod
     def at_start(cls, points: Points, *, coulomb: bool, method: Method = METHOD) -> Sliding:
         """No contact slides at the start."""
-        none, ways = np.zeros((2, len(points.rubs)), dtype=np.bool_), np.zeros_like(points.places.normal)
+        none, directions = np.zeros((2, len(points.rubs)), dtype=np.bool_), np.zeros_like(points.places.normal)
         rubs = coulomb and bool(points.rubs.any())
-        return cls(rubs, method, none[0], none[1], np.zeros(len(points.rubs)), ways)
+        return cls(rubs, method, none[0], none[1], np.zeros(len(points.rubs)), directions)
 
 
 class Slipping(NamedTuple):
     """How fast two bodies slip [m/s], and the unit vector along which they do; see `Sliding` for its sign."""
 
     speed: float
-    way: Vector
+    direction: Vector
 
 
 @inlined
@@ -77,9 +77,9 @@ def slip_of(normal: Vector, velocity: Vector) -> Slipping:
     if len(normal) == 2:
         along_face = tangent(normal)
         return Slipping(dot(along_face, velocity), along_face)
-    across = minus(velocity, scaled(dot(normal, velocity), normal))
-    speed = math.sqrt(dot(across, across))
-    return Slipping(speed, scaled(1.0 / max(speed, SLOWEST), across))
+    tangential = minus(velocity, scaled(dot(normal, velocity), normal))
+    speed = math.sqrt(dot(tangential, tangential))
+    return Slipping(speed, scaled(1.0 / max(speed, SLOWEST), tangential))
 
 
 @inlined
@@ -89,22 +89,24 @@ def slipping(places: Places, i: int, meets: Meeting, frames: Array, v: Array) ->
 
 
 @inlined
-def turned_to(sliding: Sliding, i: int, way: Vector) -> float:
-    """Take a way for contact i, and return by how much it has changed [-]."""
-    change = minus(way, vector(sliding.way, i, way))
-    put(sliding.way[i], way)
+def turned_to(sliding: Sliding, i: int, direction: Vector) -> float:
+    """Write the direction of contact i, and return by how much it has changed [-]."""
+    change = minus(direction, vector(sliding.direction, i, direction))
+    put(sliding.direction[i], direction)
     return math.sqrt(dot(change, change))
 
 
 @inlined
-def take_way(memory: EngineArrays, places: Places, sliding: Sliding, i: int, meets: Meeting, frames: Array) -> float:
-    """Take the way of contact i at the velocity of the pose, and return by how much it has changed [-].
+def update_direction(
+    memory: EngineArrays, places: Places, sliding: Sliding, i: int, meets: Meeting, frames: Array
+) -> float:
+    """Write the direction of contact i at the velocity of the pose, and return by how much it has changed [-].
 
     The leapfrog keeps the velocity of half a step before. The slip may turn with the motion in between.
     """
     kept = relative_velocity(places, i, meets, frames, memory.velocity)
     ahead = scaled(0.5 * memory.options[TIMESTEP], relative_velocity(places, i, meets, frames, memory.acceleration))
-    return turned_to(sliding, i, slip_of(meets.normal, plus(kept, ahead)).way)
+    return turned_to(sliding, i, slip_of(meets.normal, plus(kept, ahead)).direction)
 
 
 @inlined
@@ -139,7 +141,7 @@ def find_sliding(memory: EngineArrays, points: Points, sliding: Sliding, frames:
         if beyond and mu * stopping > sliding.method.neglected * pressing:
             sliding.slides[i] = any_slides = True
             sliding.force[i] = -math.copysign(mu * pressing, now.speed)
-            turned_to(sliding, i, now.way)
+            turned_to(sliding, i, now.direction)
             memory.dimension[i] = SMOOTH
     return any_slides
 
@@ -152,7 +154,7 @@ def apply_friction(memory: EngineArrays, setting: Setting, sliding: Sliding, fra
     for i in range(len(sliding.slides)):
         if sliding.slides[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
-            force = scaled(sliding.force[i], vector(sliding.way, i, meets.normal))
+            force = scaled(sliding.force[i], vector(sliding.direction, i, meets.normal))
             push_apart(places, i, meets, frames, force, memory.applied)
 
 
@@ -171,7 +173,7 @@ def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, 
             slip = slipping(places, i, meets, frames, memory.velocity).speed
             pressing = pressing_force(memory, points, i, meets, frames)
             force = -math.copysign(places.friction[i] * pressing, slip)
-            turned = take_way(memory, places, sliding, i, meets, frames)
+            turned = update_direction(memory, places, sliding, i, meets, frames)
             change, turning = max(change, abs(force - sliding.force[i])), max(turning, turned * abs(force))
             largest = max(largest, abs(force), abs(sliding.force[i]))
             sliding.force[i] = force
@@ -180,7 +182,7 @@ def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, 
         if sliding.slides[i] and (n >= method.patient or not again):
             meets = where_friction_acts(places, meeting(places, i, frames))
             now = slipping(places, i, meets, frames, memory.velocity)
-            faster = dot(now.way, relative_velocity(places, i, meets, frames, memory.acceleration))
+            faster = dot(now.direction, relative_velocity(places, i, meets, frames, memory.acceleration))
             later = now.speed + memory.options[TIMESTEP] * faster
             if now.speed * later <= 0 or (again and n == method.looks - 1):
                 memory.dimension[i] = ROUGH
@@ -242,7 +244,7 @@ def time_to_stop(places: Places, sliding: Sliding, frames: Array, v: Array, a: A
         if sliding.slid[i]:
             meets = where_friction_acts(places, meeting(places, i, frames))
             now = slipping(places, i, meets, frames, v)
-            faster = dot(now.way, relative_velocity(places, i, meets, frames, a))
+            faster = dot(now.direction, relative_velocity(places, i, meets, frames, a))
             if now.speed * faster < 0:
                 soonest = min(soonest, -now.speed / faster)
     return soonest

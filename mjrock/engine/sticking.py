@@ -66,8 +66,8 @@ class Joints(NamedTuple):
         of = np.full(len(scene.contacts.k), -1)
         for joint, body in enumerate(order):
             of[rough & (scene.contacts.body == body)] = joint
-        ways = scene.freedom.translations - 1
-        return cls(of, np.array(order, dtype=np.int64), np.full(len(order), -1), np.zeros((len(order), ways)))
+        count = scene.freedom.translations - 1
+        return cls(of, np.array(order, dtype=np.int64), np.full(len(order), -1), np.zeros((len(order), count)))
 
 
 def _height(body: int, below: dict[int, set[int]]) -> int:
@@ -132,21 +132,21 @@ def presses(points: Points, body: int, frames: Array) -> bool:
 
 
 @inlined
-def rolled(places: Places, i: int, meets: Meeting, way: Vector, moved: StepPoses) -> float:
+def rolled(places: Places, i: int, meets: Meeting, tangent: Vector, moved: StepPoses) -> float:
     """How far point i moves along one way of its face in a step without slip, as the bodies turn [m]."""
     axes, face = places.axes, places.face_body[i]
     turned = turn_between(moved.from_pose, moved.pose, places.body[i], axes)
     if face >= 0:
         turned = minus(turned, turn_between(moved.from_pose, moved.pose, face, axes))
-    along = turned[0] if len(way) == 2 else dot(way, spun(turned, meets.normal))
+    along = turned[0] if len(tangent) == 2 else dot(tangent, spun(turned, meets.normal))
     return -0.25 * along * (depth(places, i, moved.from_frames) + depth(places, i, moved.frames))
 
 
 @inlined
-def shift(frames: Array, body: int, way: Vector, distance: float) -> None:
+def shift(frames: Array, body: int, tangent: Vector, distance: float) -> None:
     """Shift a body along a way."""
-    for axis in range(len(way)):
-        frames[body, axis] += distance * way[axis]
+    for axis in range(len(tangent)):
+        frames[body, axis] += distance * tangent[axis]
 
 
 @inlined
@@ -160,14 +160,14 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: StepPoses) -
     joints.stuck[j] = i
     if i < 0:
         return
-    meets, ways = meeting(places, i, frames), tangents_at(places, i, frames)
-    for k in range(len(ways)):
-        place = dot(ways[k], meets.offset)
+    meets, tangents = meeting(places, i, frames), tangents_at(places, i, frames)
+    for k in range(len(tangents)):
+        place = dot(tangents[k], meets.offset)
         if first:
             joints.anchor[j, k] = place
         else:
-            joints.anchor[j, k] += rolled(places, i, meets, ways[k], moved)
-            shift(frames, body, ways[k], joints.anchor[j, k] - place)
+            joints.anchor[j, k] += rolled(places, i, meets, tangents[k], moved)
+            shift(frames, body, tangents[k], joints.anchor[j, k] - place)
     if first:
         return
     pressed = presses(points, body, frames)

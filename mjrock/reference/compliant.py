@@ -142,7 +142,7 @@ def _integrated(
             end = system.begin_arc(t)
             inside = output[(output > t) & (output <= end)]
             arc = solve_ivp(
-                system.held if held else system.free,
+                system.sticking if held else system.free,
                 (t, end),
                 y,
                 method="DOP853",

@@ -142,7 +142,7 @@ class Wall:
             return np.array([self.up * math.sin(theta), z, theta])
 
         def unbalanced(unknowns: Array) -> Array:
-            rates = self.held(0.0, np.append(pose(unknowns), np.zeros(3)), shaken=False)
+            rates = self.sticking(0.0, np.append(pose(unknowns), np.zeros(3)), shaken=False)
             return rates[4:] * (1 / GRAVITY, self.inertia / (self.weight * self.up))
 
         best, _, success, why = fsolve(unbalanced, (1.0, 1e3 * self._leaning()), xtol=1e-13, full_output=True)
@@ -255,7 +255,7 @@ class Wall:
             Fz -= self.mass * float(self.case.vertical(self.within_arc(t)))
         return np.array([y[3], y[4], y[5], Fx / self.mass, Fz / self.mass - GRAVITY, moment / self.inertia])
 
-    def held(self, t: float, y: Array, shaken: bool = True) -> Array:
+    def sticking(self, t: float, y: Array, shaken: bool = True) -> Array:
         """Rates of the state of a wall whose lower edge does not slip."""
         rates = self.free(t, y, shaken)
         above, rate = self.grip(y)
@@ -280,32 +280,32 @@ class Slider:
     Args:
         law: of the link.
         place: where it is while it sticks: the elongation at which the spring bears nothing [m].
-        way: 1 where it slips as the link gets longer, -1 as it gets shorter, 0 where it sticks.
+        sense: 1 where it slips as the link gets longer, -1 as it gets shorter, 0 where it sticks.
         start: its place at rest [m].
         path: how far it has slipped, either way [m].
     """
 
     law: LinkLaw
     place: float = 0.0
-    way: int = 0
+    sense: int = 0
     start: float = 0.0
     path: float = 0.0
 
     def pull(self, elongation: float) -> float:
         """The force of the link [N], negative where it pushes."""
-        return self.way * self.law.strength if self.way else self.law.k * (elongation - self.place)
+        return self.sense * self.law.strength if self.sense else self.law.k * (elongation - self.place)
 
     def change(self, elongation: float, rate: float) -> float:
         """A number that falls through zero where it begins to slip, or to stick."""
-        if self.way:
-            return self.way * rate
+        if self.sense:
+            return self.sense * rate
         return self.law.strength - abs(self.law.k * (elongation - self.place))
 
     def places(self, elongation: Array) -> Array:
         """Where it is at elongations of the arc [m], shape (n,)."""
-        if not self.way:
+        if not self.sense:
             return np.full(len(elongation), self.place)
-        return np.asarray(elongation - self.way * self.law.strength / self.law.k)
+        return np.asarray(elongation - self.sense * self.law.strength / self.law.k)
 
     def settle(self, elongation: float, rate: float, fired: bool) -> None:
         """Let it stick or slip in the next arc.
@@ -314,7 +314,7 @@ class Slider:
             elongation, rate: of the link now [m, m/s].
             fired: whether the last arc ended because `change` fell through zero.
         """
-        before, stretch = self.way, self.law.strength / self.law.k
+        before, stretch = self.sense, self.law.strength / self.law.k
         place = min(max(self.place, elongation - stretch), elongation + stretch)
         self.path += abs(place - self.place)
         self.place = place
@@ -323,4 +323,4 @@ class Slider:
             slips = not fired and before * rate >= 0
         else:
             slips = abs(pull) >= self.law.strength * (1 - SLIP_ROUNDING) and (fired or pull * rate > 0)
-        self.way = int(math.copysign(1.0, pull)) if slips else 0
+        self.sense = int(math.copysign(1.0, pull)) if slips else 0

@@ -103,7 +103,7 @@ class Comparison(NotebookPicture):
 
     def _values(self, left: Array | list[float], right: Array | list[float]) -> Array:
         every = np.repeat(np.arange(max(len(left), len(right)))[:, None], 2, axis=1)
-        return taken_by(every if self.pairs is None else self.pairs, left, right)
+        return of_impacts(every if self.pairs is None else self.pairs, left, right)
 
     @property
     def restitution(self) -> Array:
@@ -249,7 +249,7 @@ def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least
     return np.array([numbers for _, *numbers in sorted(pairs)], dtype=np.int64).reshape(-1, 2)
 
 
-def taken_by(numbers: Integers, left: Sequence[float] | Array, right: Sequence[float] | Array) -> Array:
+def of_impacts(numbers: Integers, left: Sequence[float] | Array, right: Sequence[float] | Array) -> Array:
     """Values of the impacts of each pair, NaN where there is none, shape (n, 2)."""
     sides = zip(numbers.T, (left, right), strict=True)
     columns = [[values[i] if 0 <= i < len(values) else np.nan for i in own] for own, values in sides]

@@ -12,7 +12,7 @@ from ..problem.masonry.case import AnyCase
 from ..problem.wall.rest_geometry import JointFrames
 from ..quantities import Array, require_size
 from .bodies import BodyMotion
-from .ties import across
+from .ties import link_vector
 
 ANCHORS = "anchors"
 """Name of the reaction of all links whose anchors are on no block, and of actuators."""
@@ -174,7 +174,7 @@ def add_links(case: AnyCase, gathered: KeptForces, reactions: dict[str, Array]) 
         link = case.links[name]
         if case.body_of(link.anchor_block) is not None:
             continue
-        way, anchor = across(moving, link), ANCHORS if link.anchor_block is None else blocks[link.anchor_block]
+        way, anchor = link_vector(moving, link), ANCHORS if link.anchor_block is None else blocks[link.anchor_block]
         force = -(pulled / np.linalg.norm(way, axis=1))[:, None] * way
         reactions[anchor] = reactions.get(anchor, 0.0) + force
     if case.actuators and gathered.driven is not None:

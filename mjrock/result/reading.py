@@ -131,12 +131,13 @@ def _fallen_from_faces(
     left = left_joints(case.masonry, t, joints.off)
     both = {name: min(left.get(name, np.inf), fallen.get(name, np.inf)) for name in left | fallen}
     early = t[-1] < case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to the duration
-    return in_order(both) or (_left_behind(scene, motion.pose[-1], float(t[-1])) if early else {})
+    return in_order(both) or (_stopped_by(scene, motion.pose[-1], float(t[-1])) if early else {})
 
 
-def _left_behind(scene: Scene, last: Array, end: float) -> dict[str, float]:
+def _stopped_by(scene: Scene, last: Array, end: float) -> dict[str, float]:
     """When a run ended because a block went too far or turned over [s], by the name of the block."""
     freedom, first = scene.freedom, scene.at_rest
     shifted = np.hypot.reduce((last - first)[:, : freedom.translations], axis=1)
-    far = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.bodies.extent
-    return {name: end for name, distance in zip(scene.bodies.names, far, strict=True) if distance >= 0.5 * far.max()}
+    distances = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.bodies.extent
+    least = 0.5 * distances.max()
+    return {name: end for name, distance in zip(scene.bodies.names, distances, strict=True) if distance >= least}

@@ -172,7 +172,7 @@ def _between_peaks(
     rotation in `residual`, the maxima that follow, or of the motion with which the run ends.
     """
     t, theta, _, _ = motion
-    left_over = _left_over(case, motion, residual, threshold)
+    left_over = _energy_after_last(case, motion, residual, threshold)
     signs = np.sign(np.interp(times, t, theta))
     leaving_peak, reaching_peak = peak_energies(case, np.where(signs < 0, -sizes, sizes))
     impacts = []
@@ -206,7 +206,7 @@ def _between_peaks(
     return tuple(impacts)
 
 
-def _left_over(case: Case, motion: RotationHistory, residual: Array, threshold: float) -> float:
+def _energy_after_last(case: Case, motion: RotationHistory, residual: Array, threshold: float) -> float:
     """Energy that the wall has after its last impact [J]. It is NaN if the run ends during that impact."""
     if residual.size:
         return float(case.restoring.energy(float(residual.max())))

@@ -97,7 +97,7 @@ def _motion(moving: BodyMotion, tie: Anchored, ended: Plastic | None) -> TieMoti
 
 def elongation_of(moving: BodyMotion, tie: Anchored) -> Array:
     """How much longer than its slack length a tie is where bodies are [m], negative where it is slack, shape (n,)."""
-    return np.asarray(np.linalg.norm(across(moving, tie), axis=1) - tie.law.reach)
+    return np.asarray(np.linalg.norm(link_vector(moving, tie), axis=1) - tie.law.reach)
 
 
 class LinkEnd(NamedTuple):
@@ -113,11 +113,11 @@ def link_ends(case: AnyCase, link: Anchored) -> tuple[LinkEnd, LinkEnd]:
     return LinkEnd(link.block, held), LinkEnd(link.anchor_block, link.anchor_of(held))
 
 
-def across(moving: BodyMotion, tie: Anchored) -> Array:
-    """From the anchor of a link to the point that it holds where bodies are [m], shape (n, d)."""
-    held, anchor = link_ends(moving.case, tie)
-    at_held, at_anchor = (moving.displaced(end.block, end.point[None])[:, 0] for end in (held, anchor))
-    return np.asarray(held.point - anchor.point + at_held - at_anchor)
+def link_vector(moving: BodyMotion, tie: Anchored) -> Array:
+    """Vector from the anchor of a link to its other end in a motion [m], shape (n, d)."""
+    end, anchor = link_ends(moving.case, tie)
+    own, of_anchor = (moving.displaced(each.block, each.point[None])[:, 0] for each in (end, anchor))
+    return np.asarray(end.point - anchor.point + own - of_anchor)
 
 
 def ties_message(plastic: Mapping[str, Plastic]) -> str:

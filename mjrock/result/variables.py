@@ -16,7 +16,7 @@ from .origin import sources
 from .rocking import Impact, Rocking
 from .tree import Tree, Writer, unit_and_text
 
-HELD_ENERGY = ("kinetic", "potential", "elastic")
+STATE_ENERGY = ("kinetic", "potential", "elastic")
 """Accounts of a ledger that are energies of the bodies."""
 
 
@@ -136,7 +136,7 @@ def _of_ledger(ledger: Ledger | None) -> Iterator[tuple[str, Variable]]:
     """Every part of the energy."""
     if ledger is None:
         return
-    for name in (*HELD_ENERGY, "friction", "ground"):
+    for name in (*STATE_ENERGY, "friction", "ground"):
         yield f"ledger {name}", _described(Ledger, name, ("t",), getattr(ledger, name))
     for kind in ("dashpots", "actuators", "ties", "broken", "ends", "bonds"):
         for name, values in getattr(ledger, kind).items():

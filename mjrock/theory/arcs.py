@@ -30,7 +30,7 @@ from .law import (
     Toe,
     WallTies,
     acceleration,
-    held_back,
+    acceleration_by_ties,
     nystroem,
     pull_of,
     pushed,
@@ -174,7 +174,7 @@ def free_moment(toe: Toe, held: float, x: float, z: float) -> float:
 def uplift(law: RockingLaw, one_sided: bool, t: float, duration: float) -> tuple[float, float]:
     """When a wall that rests at time `t` is lifted, and to which side [s, +1 or -1]. Never is infinity."""
     begun = t
-    outer, inner = -held_back(law.outer, law.ties, 0.0), held_back(law.inner, law.ties, 0.0)
+    outer, inner = -acceleration_by_ties(law.outer, law.ties, 0.0), acceleration_by_ties(law.inner, law.ties, 0.0)
     while t < duration:
         push, end = pushed(law.x, law.z, t)
         for toe, held in ((law.outer, outer), (law.inner, inner)):

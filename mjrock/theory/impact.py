@@ -102,7 +102,7 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     )
 
 
-def as_one(pile: RigidStack) -> Restitution:
+def rigid_rocking(pile: RigidStack) -> Restitution:
     """The restitution of a stack that rocks as one.
 
     That of the base is of the rigid impact. That of the side stop conserves the angular momentum about its top (Eq. 3
@@ -138,26 +138,26 @@ def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple
     def closed_in(velocity: Array) -> Flags:
         return (opens @ velocity).reshape(-1, 2).min(axis=1) <= rate
 
-    held, parted = rough & closed_in(before), np.zeros_like(rough)
+    sticking, parted = rough & closed_in(before), np.zeros_like(rough)
     while True:
-        after, pressed, rubbed = _held(before, opens, slips, held)
+        after, pressed, rubbed = _with_sticking(before, opens, slips, sticking)
         closed = closed_in(after)
-        new = (held & (closed | parted)) | (rough & closed)
-        if (new == held).all():
+        new = (sticking & (closed | parted)) | (rough & closed)
+        if (new == sticking).all():
             rubbed[np.abs(rubbed) <= impulse] = 0.0
             return after, pressed, rubbed
-        parted |= held & ~new
-        held = new
+        parted |= sticking & ~new
+        sticking = new
 
 
-def _held(before: Array, opens: Array, slips: Array, held: Flags) -> tuple[Array, Array, Array]:
+def _with_sticking(before: Array, opens: Array, slips: Array, sticking: Flags) -> tuple[Array, Array, Array]:
     """As `_projected`, for joints of which it is known whether they are held."""
-    free = null_space(slips[held]) if held.any() else np.eye(len(before))
-    ways = opens @ free
-    ways[np.linalg.norm(ways, axis=1) <= NOTHING * np.linalg.norm(opens, axis=1)] = 0.0  # ends that cannot move
-    pressed, rubbed = _nearest(ways, free.T @ before), np.zeros(len(slips))
+    free = null_space(slips[sticking]) if sticking.any() else np.eye(len(before))
+    rates = opens @ free
+    rates[np.linalg.norm(rates, axis=1) <= NOTHING * np.linalg.norm(opens, axis=1)] = 0.0  # ends that cannot move
+    pressed, rubbed = _nearest(rates, free.T @ before), np.zeros(len(slips))
     after = free @ (free.T @ (before + opens.T @ pressed))
-    rubbed[held] = np.linalg.lstsq(slips[held].T, after - before - opens.T @ pressed, rcond=None)[0]
+    rubbed[sticking] = np.linalg.lstsq(slips[sticking].T, after - before - opens.T @ pressed, rcond=None)[0]
     return after, pressed.reshape(-1, 2), rubbed
 
 

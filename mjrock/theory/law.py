@@ -182,7 +182,7 @@ def turned_by(theta: float, sine: float, cosine: float, delta: float) -> tuple[f
 
 
 @inlined
-def held_back(toe: Toe, ties: WallTies, theta: float) -> float:
+def acceleration_by_ties(toe: Toe, ties: WallTies, theta: float) -> float:
     """Acceleration by the ties, each doing in the step what it did at its start [rad/s2]."""
     total = 0.0
     for i in range(len(ties.doing)):
@@ -207,7 +207,7 @@ def acceleration(toe: Toe, ties: WallTies, x: float, z: float, theta: float, sin
     push = toe.side * x
     a, b = toe.P + toe.Wd * z + toe.Wz * push, toe.Q + toe.Wz * z - toe.Wd * push
     total: float = b * sine - toe.side * a * cosine
-    return total + held_back(toe, ties, theta) if len(ties.doing) > 0 else total
+    return total + acceleration_by_ties(toe, ties, theta) if len(ties.doing) > 0 else total
 
 
 @inlined

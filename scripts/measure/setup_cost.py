@@ -70,7 +70,7 @@ def measured(kind: str, blocks: int) -> list[object]:
     search, every = at_rest.search, np.ones(len(masonry.blocks), dtype=bool)
     begun = time.process_time()
     for _ in range(3):
-        search.finder.found(search.limits.start, NEAR * search.sizes, every, search.finder.jointed)
+        search.finder.places_near(search.limits.start, NEAR * search.sizes, every, search.finder.jointed)
     took = (time.process_time() - begun) / 3
     lines, free = len(masonry.lines.k), len(masonry.free)
     row = [kind, free, lines, *np.diff(times).round(2), round(times[-1] - times[0], 2), round(peak())]

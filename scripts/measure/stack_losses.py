@@ -23,7 +23,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.problem.masonry.rigid_stack import RigidStack
 from mjrock.study.matching.matched import SAMPLE_STEP, excess, restitutions
-from mjrock.theory.impact import as_one
+from mjrock.theory.impact import rigid_rocking
 from scripts.shared import cli
 from scripts.shared.labels import beside
 from scripts.shared.paper import FIGURE_3
@@ -61,7 +61,7 @@ CHOICES: dict[str, Callable[[int, float, bool], mr.Masonry]] = {
 def lost(made: mr.Masonry, rotation: float = ROTATIONS[0], accuracy: float = 1e-4, impact: int = 1) -> float:
     """Energy that an impact takes after the stack has risen to a rotation, over that of theory [-]."""
     pile = RigidStack.from_masonry(made)
-    e, (velocity, swing) = as_one(pile), pile.rising(rotation)
+    e, (velocity, swing) = rigid_rocking(pile), pile.rising(rotation)
     case = mr.MasonryCase(made, (impact + 0.75) * swing, velocity=velocity)
     found = restitutions(mr.simulate(case, accuracy=accuracy, output_step=SAMPLE_STEP * swing), pile)
     return 1 + excess(float(found[impact - 1]), abs(e.lumped) if pile.sides else e.base)

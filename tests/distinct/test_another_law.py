@@ -62,7 +62,7 @@ def landing(d, h, c=0.0, fall=-0.5, k_s=math.inf):
     clock = Clock(0, h, 1, 0, last + 1, last, math.inf, 0.0, (0.0,) * d)
     assert loop.advance.py_func(whole, account, samples, clock, alone(whole)) == (last + 1, last + 1, False)
     assert whole.lines["depth"].max() == 0.0
-    return samples.taken(slice(-1)), whole.bodies["velocity"][0]
+    return samples.chosen(slice(-1)), whole.bodies["velocity"][0]
 
 
 def unpaid(samples):

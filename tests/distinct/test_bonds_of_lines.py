@@ -56,7 +56,7 @@ def test_dashpots_along_the_face_leave_out_what_holds(d, secant):
     whole, _ = bonded_line(d, 0, -0.001, secant=secant)
     line, bond = whole.lines[0], whole.laws[0].rows[0]
     meet = contact.where_friction_rubs(met(whole))
-    slip = friction.along_face(meet.normal, contact.relative(whole.bodies, line, whole.supports, meet))
+    slip = friction.along_face(meet.normal, contact.relative_velocity(whole.bodies, line, whole.supports, meet))
     drags = []
     for undamped in (0.0, 1.0):
         twin = copy_of(bond)
@@ -76,7 +76,7 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     whole, normal = bonded_line(d, face, gap, **state, undamped=undamped)
     line, bond, bodies = whole.lines[0], whole.laws[0].rows[0], whole.bodies
     meet = contact.where_friction_rubs(met(whole))
-    velocity = contact.relative(bodies, line, whole.supports, meet)
+    velocity = contact.relative_velocity(bodies, line, whole.supports, meet)
     rate, slip = normal @ velocity, friction.along_face(meet.normal, velocity)
     twin, other = copy_of(bond), system(d)
     tear(twin, gap)
@@ -149,7 +149,7 @@ def test_a_bond_that_has_torn_keeps_its_secant_and_presses_with_its_line(d):
     line, bond = whole.lines[0], whole.laws[0].rows[0]
     line.k, line.c = K - 3e5, C * (1 - 0.3)
     meet = contact.where_friction_rubs(met(whole))
-    rate = np.dot(meet.normal, contact.relative(whole.bodies, line, whole.supports, meet))
+    rate = np.dot(meet.normal, contact.relative_velocity(whole.bodies, line, whole.supports, meet))
     bond.grip[:] = 1.0 if d == 2 else matrix(3, 0).T @ (matrix(3, 0) @ ALONG[3])
     whole.laws[0].act(whole, books(whole), 0.0, H)
     assert bond.secant == 3e5
@@ -166,7 +166,7 @@ def test_slip_takes_no_more_than_there_is_to_take(d, face, held):
     whole, _ = bonded_line(d, face, 0.0, strength=COHESION / 3, residual=0.0, friction_drop=0.0, c=0.0, c_s=0.0)
     line, bond, limit = whole.lines[0], whole.laws[0].rows[0], COHESION / 9
     meet = contact.where_friction_rubs(met(whole))
-    velocity = contact.relative(whole.bodies, line, whole.supports, meet)
+    velocity = contact.relative_velocity(whole.bodies, line, whole.supports, meet)
     slip = np.array(friction.along_face(meet.normal, velocity))
     way = slip / np.linalg.norm(slip)
     grip = held * limit / K_SHEAR * way
@@ -260,7 +260,7 @@ def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
     grip, drag = (0.4, 0.3) if d == 2 else ([0.4, 0.1, -0.2], [0.3, -0.5, 0.6])
     bond.grip[:], bond.dragged[:], line.grip[:] = grip, drag, 7.0
     kept = books(whole)
-    bonds.let_go(kept, line, bond)
+    bonds.make_dry(kept, line, bond)
     assert taken_by(kept)[0] == pytest.approx(0.5 * 2e4 * 0.003**2 if tension else 0.0)
     assert (line.k, line.c, line.margin) == (K, C, 9.0)
     if tension:
@@ -279,7 +279,7 @@ def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
 def test_a_closed_bond_that_goes_takes_nothing_more():
     whole, _ = bonded_line(2, -1, -0.002, secant=2e4, gap=-0.003)
     kept = books(whole)
-    bonds.let_go(kept, whole.lines[0], whole.laws[0].rows[0])
+    bonds.make_dry(kept, whole.lines[0], whole.laws[0].rows[0])
     assert taken_by(kept)[0] == 0.0
 
 

@@ -126,7 +126,7 @@ def test_a_corner_within_the_slack_of_an_edge_counts_as_on_it():
 def test_the_part_of_a_face_that_lies_over_another(place, low, high):
     solids = solids_about(LOWER, turned((1.0, 1.0, 1.0), (*place, -0.01)))
     face, over, room = face_of(solids, 0, UP)[0], face_of(solids, 1, DOWN)[0], polygon_in([], 24)
-    count = clipping.lying_over(solids, face, over, room)
+    count = clipping.common_area(solids, face, over, room)
     x, y, z = (low[0], high[0]), (low[1], high[1]), -0.01
     corners = [(x[0], y[0], z), (x[0], y[1], z), (x[1], y[1], z), (x[1], y[0], z)]
     same_polygons(room[:count], corners)
@@ -139,7 +139,7 @@ def test_a_corner_that_is_hardly_beyond_an_edge_stays_there(beyond, left, size):
     lower = mr.Polyhedron.box((2.0 * size, 2.0 * size, 1.0), (0.0, 0.0, -0.5))
     solids = solids_about(lower, turned((size, size, 1.0), ((0.5 + 2.0 * beyond) * size, 0.0, 0.0)))
     room = polygon_in([], 24)
-    count = clipping.lying_over(solids, face_of(solids, 0, UP)[0], face_of(solids, 1, DOWN)[0], room)
+    count = clipping.common_area(solids, face_of(solids, 0, UP)[0], face_of(solids, 1, DOWN)[0], room)
     assert room[:count, 0].max() / size - 1.0 == pytest.approx(left * 2.0 * beyond, abs=4e-16)
 
 
@@ -154,7 +154,7 @@ def test_corners_that_fall_on_those_before_them_are_left_out():
         ([b, a, near[1], c], [b, a, near[1], c]),
     ):
         polygon = polygon_in(corners)
-        count = clipping.parted(polygon, len(corners), 3e-9)
+        count = clipping.without_duplicates(polygon, len(corners), 3e-9)
         np.testing.assert_array_equal(polygon[:count], left)
 
 
@@ -288,7 +288,7 @@ def met(block, at, over=DOWN):
     """What a place of the face of a block over the lower one is."""
     solids, table = solids_about(LOWER, block), rows(clipping.PLACE, 1)
     faces = face_of(solids, 0, UP)[0], face_of(solids, 1, over)[0]
-    clipping.meet(solids, faces, (0, 1), tuple(at), table[0])
+    clipping.write_corner(solids, faces, (0, 1), tuple(at), table[0])
     return columns(table)[0]
 
 

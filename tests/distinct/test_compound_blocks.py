@@ -65,7 +65,7 @@ def drawn_at(masonry):
 
     met = setup_of(mr.MasonryCase(masonry, 0.1, settled=False), None, None).search
     every = np.ones(met.count, dtype=bool)
-    found = met.finder.found(met.limits.start, np.full(met.count, 1e-3), every, np.zeros(0, dtype=np.int64))
+    found = met.finder.places_near(met.limits.start, np.full(met.count, 1e-3), every, np.zeros(0, dtype=np.int64))
     columns = np.column_stack([found.place, found.normal, found.gap, found.share, found.area])
     return columns[np.lexsort(np.round(columns, 9).T[::-1])]
 

@@ -66,7 +66,7 @@ def test_a_line_is_where_its_bodies_have_it(d, face, gap):
         over = velocity_at(bodies[0], np.array(meet.face_arm))
     elif face != -1:
         over = whole.supports.moving[0]
-    slides = contact.relative(bodies, whole.lines[0], whole.supports, meet)
+    slides = contact.relative_velocity(bodies, whole.lines[0], whole.supports, meet)
     np.testing.assert_allclose(slides, velocity_at(bodies[1], np.array(meet.arm)) - over, rtol=1e-12)
 
 
@@ -180,7 +180,7 @@ LAW = Meeting(0.0, (0.0, 1.0), (0.0, 0.0), (0.0, 0.0), False)
 def test_what_a_line_has_lost_at_an_end(depth, gap, opened, lost):
     line = system(2).lines[0]
     line.k, line.c, line.depth = K, C, depth
-    assert contact.lost_at_the_end(line, LAW._replace(gap=gap), opened) == pytest.approx(lost, abs=1e-9 * K)
+    assert contact.lost_past_face_edge(line, LAW._replace(gap=gap), opened) == pytest.approx(lost, abs=1e-9 * K)
 
 
 def pressed(whole, lead=0.0, h=H):
@@ -195,7 +195,7 @@ def moving_line(d, face, gap, *, was=0.002, push=150.0, number=0, whole=None, **
     law = {"k": K, "c": C, "depth": was, "push": push, "pressed": 7.0, "rate": -0.1, "group": 1} | law
     normal = put_line(whole, face, gap, number=number, **law)
     meet = contact.where_friction_rubs(met(whole, number))
-    over = contact.relative(whole.bodies, whole.lines[number], whole.supports, meet)
+    over = contact.relative_velocity(whole.bodies, whole.lines[number], whole.supports, meet)
     rate = normal @ over
     return whole, meet, rate, over - rate * normal
 
@@ -367,8 +367,8 @@ def test_what_a_line_loses_past_its_end_is_booked(d):
         line.k, line.c, line.depth, line.push, line.past = K, C, 0.004, 400.0, before
         meet = met(whole)
         rub = contact.where_friction_rubs(meet)
-        rate = np.dot(meet.normal, contact.relative(whole.bodies, line, whole.supports, rub))
-        lost = contact.lost_at_the_end(line, meet, H * rate)
+        rate = np.dot(meet.normal, contact.relative_velocity(whole.bodies, line, whole.supports, rub))
+        lost = contact.lost_past_face_edge(line, meet, H * rate)
         kept, _ = pressed(whole)
         assert lost != 0
         assert kept.totals[0].joint_ends == pytest.approx(lost, rel=1e-9)
@@ -407,7 +407,9 @@ def test_springs_do_the_work_of_their_touch(d, face):
     normal = np.array(met(whole, 1).normal)
     taken, put_in = contact.settle_touches(whole, kept, 2, KICK)
     struck = kept.impulse[:2]
-    left = [normal @ contact.relative(whole.bodies, whole.lines[i], whole.supports, met(whole, i)) for i in (1, 2)]
+    left = [
+        normal @ contact.relative_velocity(whole.bodies, whole.lines[i], whole.supports, met(whole, i)) for i in (1, 2)
+    ]
     for i in (1, 2):
         whole.lines[i].due = (0.0, 0.02, -0.03)[i]
         assert struck[i - 1] == pytest.approx(touches.due_impulse(whole.lines[i], left[i - 1]), rel=1e-3)

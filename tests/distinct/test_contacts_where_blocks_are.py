@@ -31,7 +31,7 @@ def found(blocks, moved, turn):
         np.array([0 * np.eye(3), matrix - np.eye(3)]),
     )
     finder = Finder(stood(blocks), flat=False)
-    return finder.found(poses, np.full(2, 5e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
+    return finder.places_near(poses, np.full(2, 5e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
 
 
 def about(axis, angle):

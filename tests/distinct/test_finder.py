@@ -13,7 +13,7 @@ import mjrock as mr
 from mjrock.distinct.rows import rows
 from mjrock.distinct.search import finder
 from mjrock.distinct.search.clipping import PLACE
-from mjrock.distinct.search.finder import Finder, Found, Near
+from mjrock.distinct.search.finder import ContactPlaces, Finder, Near
 from mjrock.distinct.search.solids import Poses, Solids
 
 BOX = mr.Polyhedron.box
@@ -42,7 +42,7 @@ def face_of(solids, block, way):
 def test_a_number_is_looked_for_among_increasing_ones(values):
     for number in range(-1, 23):
         where = values.index(number) if number in values else -1
-        assert finder.among(np.array(values, dtype=np.int64), number) == where
+        assert finder.index_of(np.array(values, dtype=np.int64), number) == where
 
 
 @pytest.mark.parametrize("axis", range(3))
@@ -51,16 +51,16 @@ def test_blocks_are_apart_along_an_axis(axis):
         at = np.zeros(3)
         at[axis] = low
         near = Near(np.array([np.zeros(3), at]), np.array([np.ones(3), at + 1]), *[None] * 7)
-        assert bool(finder.are_apart(near, 0, 1)) is bool(finder.are_apart(near, 1, 0)) is apart
+        assert bool(finder.bounds_separated(near, 0, 1)) is bool(finder.bounds_separated(near, 1, 0)) is apart
 
 
 def test_how_far_a_block_is_outside_of_a_face_and_reaches():
     solids = solids_about(moved(LOWER, (0.3, 0.0, 0.0)), moved(UPPER, (0.0, 0.0, 0.25)))
     for way, reaches in (((1.0, 0.0, 0.0), 1.3), ((0.0, 0.0, 1.0), 0.0), ((0.0, -2.0, 0.0), 3.0)):
-        assert finder.farthest(solids, 0, way) == pytest.approx(reaches)
-    assert finder.outside(solids, face_of(solids, 0, (0, 0, 1)), 1) == pytest.approx(0.25)
-    assert finder.outside(solids, face_of(solids, 1, (0, 0, -1)), 0) == pytest.approx(0.25)
-    assert finder.outside(solids, face_of(solids, 0, (1, 0, 0)), 1) == pytest.approx(-1.6)
+        assert finder.farthest_along(solids, 0, way) == pytest.approx(reaches)
+    assert finder.distance_outside(solids, face_of(solids, 0, (0, 0, 1)), 1) == pytest.approx(0.25)
+    assert finder.distance_outside(solids, face_of(solids, 1, (0, 0, -1)), 0) == pytest.approx(0.25)
+    assert finder.distance_outside(solids, face_of(solids, 0, (1, 0, 0)), 1) == pytest.approx(-1.6)
     assert solids.extent[face_of(solids, 0, (0, 0, 1))] == pytest.approx(10.0)
     assert solids.extent[face_of(solids, 1, (0, 1, 0))] == pytest.approx(2.8)
     assert finder.height(solids, face_of(solids, 0, (1, 0, 0)), (1.5, 9.0, 9.0)) == pytest.approx(0.2)
@@ -78,15 +78,15 @@ def test_the_face_that_another_block_is_farthest_outside_of():
         ((1.2, 0, -0.2), (1, 0, 0), -0.1),
     ):
         solids = solids_about(LOWER, moved(UPPER, by))
-        face, most = finder.face_between(solids, 0, 1, 1.0)
+        face, most = finder.separating_face(solids, 0, 1, 1.0)
         assert (face, most) == (face_of(solids, 0, way), pytest.approx(apart))
     solids = solids_about(LOWER, moved(UPPER, (9.0, 9.0, 9.0)))  # the first face that is far enough will do
-    face, most = finder.face_between(solids, 0, 1, 0.5)
+    face, most = finder.separating_face(solids, 0, 1, 0.5)
     assert face == min(face_of(solids, 0, way) for way in np.eye(3))
     assert most > 5
     cube = BOX((1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
     solids = solids_about(cube, moved(cube, (0.5, 0.5, 0.5)))  # of three that are as far the first one
-    face, most = finder.face_between(solids, 0, 1, 1.0)
+    face, most = finder.separating_face(solids, 0, 1, 1.0)
     assert face == min(face_of(solids, 0, way) for way in np.eye(3))
     assert most == pytest.approx(-0.5)
 
@@ -96,11 +96,11 @@ def test_nothing_meets_a_face_inside_its_block(height, apart):
     """What is outside of it counts as far, and is nearest to another face otherwise."""
     top = face_of(solids_about(LOWER), 0, (0, 0, 1))
     solids = solids_about(LOWER, moved(UPPER, (0.8 if apart < 0 else 0.0, 0.0, height)), inside=[(0, top)])
-    face, most = finder.face_between(solids, 0, 1, 1.0)
+    face, most = finder.separating_face(solids, 0, 1, 1.0)
     assert most == (apart if math.isinf(apart) else pytest.approx(-0.5))
     assert (face == top) is math.isinf(apart)
     every = solids_about(LOWER, moved(UPPER, (0.0, 0.0, -0.3)), inside=[(0, i) for i in range(6)])
-    assert finder.face_between(every, 0, 1, 1.0) == (-1, -math.inf)
+    assert finder.separating_face(every, 0, 1, 1.0) == (-1, -math.inf)
 
 
 ROOF = [(x, y, z) for x in (-1.0, 1.0) for y, z in ((0.0, 0.0), (0.5, -0.5), (-0.5, -0.5))]
@@ -116,7 +116,7 @@ def test_edges_that_cross_are_apart_along_the_direction_across_both(gap):
     blocks = mr.Polyhedron(ROOF), moved(mr.Polyhedron(KEEL), (0.2, 0.1, gap), turn)
     for order, up in ((1, 1.0), (-1, -1.0)):
         solids = solids_about(*blocks[::order])
-        way, apart = finder.across_edges(solids, 0, 1)
+        way, apart = finder.edge_separation(solids, 0, 1)
         np.testing.assert_allclose(way, [0.0, 0.0, up], atol=1e-12)
         assert apart == pytest.approx(gap, abs=1e-12)
         end, along = finder.edge_towards(solids, 0, way)
@@ -128,22 +128,22 @@ def test_edges_that_cross_are_apart_along_the_direction_across_both(gap):
         )
         assert end[2] == pytest.approx(0.0 if up > 0 else gap)
         table = rows(PLACE, 3)
-        assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
+        assert finder.write_edges(solids, (0, 1), way, apart, table, 1) == 2
         table = columns(table)
         y, x = 0.0, 0.2 + 0.1 * math.tan(0.3)  # where the keel passes over the ridge
         np.testing.assert_allclose(table[1], [0, 1, x, y, 0.5 * gap, *way, gap, 0.25, 0.0], atol=1e-12)
         assert not table[[0, 2]].any()
         table = rows(PLACE, 1)
-        assert finder.meet_edges(solids, (0, 1), way, apart, table, 1) == 2
+        assert finder.write_edges(solids, (0, 1), way, apart, table, 1) == 2
         assert not columns(table).any()
 
 
 @pytest.mark.parametrize(("sine", "across"), [(0.9e-3, False), (1.5e-3, True)])
 def test_edges_that_are_nearly_parallel_have_no_direction_across_both(sine, across):
     solids = solids_about(LOWER, UPPER)._replace(
-        ways=np.array([[1.0, 0.0, 0.0], [math.sqrt(1 - sine**2), sine, 0.0]]), way=np.array([0, 1, 2])
+        edges=np.array([[1.0, 0.0, 0.0], [math.sqrt(1 - sine**2), sine, 0.0]]), edge=np.array([0, 1, 2])
     )
-    assert np.isfinite(finder.across_edges(solids, 0, 1)[1]) == across
+    assert np.isfinite(finder.edge_separation(solids, 0, 1)[1]) == across
 
 
 def test_the_first_of_edges_that_reach_as_far_is_taken():
@@ -179,7 +179,7 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
         return count + 1
 
     monkeypatch.setattr(finder, "clip", clip)
-    monkeypatch.setattr(finder, "outside", lambda _, face, other: out.get(face, -2.0))
+    monkeypatch.setattr(finder, "distance_outside", lambda _, face, other: out.get(face, -2.0))
     monkeypatch.setattr(finder, "lies_in", lambda _, block, at, slack: True)
     monkeypatch.setattr(finder, "height", lambda _, face, at: heights.get(face, 0.0))
     table, heights = rows(PLACE, 3), {}
@@ -239,15 +239,17 @@ def decided(
 
     normals = {faces[0]: (1.0, 0.0, 0.0), faces[1]: (1.0, 0.0, 0.0), 99: (cosine, math.sqrt(1 - cosine**2), 0.0)}
     for name, what in {
-        "face_between": lambda _, block, other, far: (faces[block], apart[block]),
+        "separating_face": lambda _, block, other, far: (faces[block], apart[block]),
         "shallowest": shallowest,
         "face_towards": lambda _, block, way: 99 if way[0] < 0 else None,
         "normal_of": lambda _, face: normals[face],
-        "across_edges": lambda _, a, b: ((0.0, 0.0, 1.0), across),
-        "meet_edges": lambda _, blocks, way, far, table, count: ("edges", blocks, way, far),
+        "edge_separation": lambda _, a, b: ((0.0, 0.0, 1.0), across),
+        "write_edges": lambda _, blocks, way, far, table, count: ("edges", blocks, way, far),
         "with_whole_sides": lambda solids: solids,
         "clip": lambda _, face, blocks, table, count, room: met.append(("faces", face, blocks)) or count + clipped,
-        "pass_by": lambda _, face, blocks, gap, table, count: met.append(("passes", face, blocks, gap)) or count + 1,
+        "write_near_corner": lambda _, face, blocks, gap, table, count: (
+            met.append(("passes", face, blocks, gap)) or count + 1
+        ),
     }.items():
         monkeypatch.setattr(finder, name, what)
     solids = SimpleNamespace(extent=dict(zip(faces, outlines, strict=True)))
@@ -354,16 +356,16 @@ def test_places_do_not_depend_on_the_numbers_of_blocks_nor_on_what_is_far_away()
         boxes.append(mr.Polyhedron(np.array(corners), name=f"bar_{i}"))
     blocks, far = [table, *boxes], mr.Polyhedron.box((1.0, 1.0, 1.0), (0.0, 0.0, 90.0), fixed=True, name="far")
 
-    def among(chosen):
+    def index_of(chosen):
         _, places = found(chosen, reach=0.01)
         names = [chosen[i].name for i in places.face], [chosen[i].name for i in places.other]
         return list(zip(*names, strict=True)), places
 
-    names, places = among(blocks)
+    names, places = index_of(blocks)
     assert [name for name, area in zip(names, places.area, strict=True) if area == 0] == [("bar_0", "bar_1")]
     assert len(set(names)) > 8
     for others in ([far, *blocks], blocks[::-1], [blocks[i] for i in (4, 2, 10, 8, 0, 6, 1, 9, 7, 3, 5)]):
-        again, where = among(others)
+        again, where = index_of(others)
         assert again == names
         for name in ("place", "normal", "gap", "share", "area"):
             np.testing.assert_array_equal(getattr(where, name), getattr(places, name))
@@ -413,7 +415,9 @@ def found(blocks, by=None, change=None, *, reach=0.01, watched=None, skipped=(),
         whole._table = rows(PLACE, room)
     which = np.ones(len(blocks), dtype=bool) if watched is None else np.isin(range(len(blocks)), watched)
     a, b = np.reshape(np.array(skipped, dtype=np.int64), (-1, 2)).T
-    places = whole.found(poses, np.broadcast_to(reach, len(blocks)).astype(float), which, np.sort(whole.between(a, b)))
+    places = whole.places_near(
+        poses, np.broadcast_to(reach, len(blocks)).astype(float), which, np.sort(whole.between(a, b))
+    )
     pairs = sorted({tuple(sorted(pair)) for pair in zip(places.face.tolist(), places.other.tolist(), strict=True)})
     return pairs, places
 
@@ -504,7 +508,7 @@ def test_places_in_the_plane_do_not_depend_on_the_size_of_other_blocks(beside):
     shift = [(0.0, 0.0), (0.0, 0.299)]
     _, alone = found(given, shift)
     _, places = found([*given, box(30, 30 + beside, 0.5, 0.5 + beside)], [*shift, (0.0, 0.0)])
-    for name in Found._fields:
+    for name in ContactPlaces._fields:
         np.testing.assert_allclose(getattr(places, name), getattr(alone, name), rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(places.gap.min(), -0.001, rtol=1e-9)
     np.testing.assert_allclose(places.place[places.gap.argmin()], [0.0, -0.0005], atol=1e-12)
@@ -553,7 +557,7 @@ def test_the_parts_of_a_block_share_what_a_pair_has_by_their_areas(prism):
     drawn, _ = poses_of(blocks)
     whole = Finder(stood(blocks), flat=drawn.shape[1] == 2)
     each = np.ones(3)
-    pair = Found(
+    pair = ContactPlaces(
         *(np.array(of) for of in ([3, 1, 1], [1, 3, 2])), each, each, each, 0.25 * each, np.array([0.0, 0.0, 2.0])
     )
     edges = whole._among_blocks(pair)  # edges have the share that they have, and no area

@@ -28,16 +28,16 @@ def places_of(corners, cells):
     """Nodes of a polygon [m], shape (n, 2), what each stands for [m2], and how often each was met."""
     polygon = polygon_in(corners)
     whole = clipping.grid_of(polygon, len(corners), cells)
-    nodes, middle = clipping.nodes_of(whole), clipping.middle_of(polygon, len(corners))
+    nodes, middle = clipping.node_count(whole), clipping.middle_of(polygon, len(corners))
     places, areas, corner = np.full((nodes, 2), np.nan), np.zeros(nodes), np.zeros(nodes, dtype=bool)
     for q in range(whole.quads):
         quad = clipping.quad_of(polygon, whole, q, middle)
-        for i in range(whole.along + 1):
-            for j in range(whole.across + 1):
-                number = clipping.number_of(whole, q, i, j)
-                at = clipping.place_in(quad, i / whole.along, j / whole.across)
+        for i in range(whole.cells_s + 1):
+            for j in range(whole.cells_t + 1):
+                number = clipping.node_number(whole, q, i, j)
+                at = clipping.point_in(quad, i / whole.cells_s, j / whole.cells_t)
                 assert np.isnan(places[number, 0]) or places[number] == pytest.approx(at[:2], abs=1e-14)
-                places[number], areas[number] = at[:2], areas[number] + clipping.stands_for(quad, whole, i, j)
+                places[number], areas[number] = at[:2], areas[number] + clipping.tributary_area(quad, whole, i, j)
                 corner[number] = clipping.is_corner(whole, i, j)
     return places, areas, corner
 
@@ -100,7 +100,9 @@ LOWER = BOX((2.0, 2.0, 1.0), (0.0, 0.0, -0.5))
 def laid(upper, cells, size=99):
     """Places of a block that lies over the upper face of another one."""
     solids, table = solids_about(LOWER, upper), rows(clipping.PLACE, size)
-    count = clipping.lay_out(solids, clipping.face_towards(solids, 0, UP), (0, 1), cells, table, 1, polygon_in([], 32))
+    count = clipping.clip_in_grid(
+        solids, clipping.face_towards(solids, 0, UP), (0, 1), cells, table, 1, polygon_in([], 32)
+    )
     return columns(table), count
 
 
@@ -163,7 +165,7 @@ def test_torsion_of_two_squares_tends_to_that_of_even_pressure(turn):
         finder = Finder(stood(blocks), flat=False)
         for jointed, off in ((np.array([1]), within), (np.zeros(0, dtype=np.int64), 1.0)):
             finder.jointed, finder.points = jointed, np.full(len(jointed), points)
-            found = finder.found(poses, np.full(2, 1e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
+            found = finder.places_near(poses, np.full(2, 1e-3), np.ones(2, dtype=bool), np.zeros(0, dtype=np.int64))
             radius = float(found.share @ np.linalg.norm(found.place[:, :2], axis=1))
             assert found.share.sum() == pytest.approx(1.0)
             assert radius == pytest.approx(expected, rel=off)

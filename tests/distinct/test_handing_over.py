@@ -10,7 +10,7 @@ from mjrock.distinct.contacts import contact
 from mjrock.distinct.contacts.touches import FIRST_OPENING
 from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK, kinds, rows
 from mjrock.distinct.search import handover
-from mjrock.distinct.search.finder import Found
+from mjrock.distinct.search.finder import ContactPlaces
 from mjrock.distinct.search.handover import Blocks, Lines, Pairs, Place
 from mjrock.distinct.search.solids import Poses
 
@@ -52,7 +52,7 @@ def found(d, face, other, gap=-0.004, count=1):
     """Places of two blocks, all at one point."""
     place = np.tile(AT[d], (count, 1)) + np.arange(count)[:, None] * 0.05
     each = np.ones(count)
-    return Found(
+    return ContactPlaces(
         np.full(count, face), np.full(count, other), place, np.tile(NORMAL[d], (count, 1)), gap * each, each, each
     )
 
@@ -156,7 +156,7 @@ def gone_at(d, shift=0.0, normal=None, slack=0.0, blocks_of=(1, 2)):
 
 def presses(d, gone, new=None, ends=(0, 1)):
     new = found(d, 1, 2) if new is None else new
-    return handover.pressed_at(system(d).lines[0], 0, new, gone, ends, blocks(d))
+    return handover.pressed_overlap(system(d).lines[0], 0, new, gone, ends, blocks(d))
 
 
 @BOTH
@@ -334,7 +334,7 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
     """Two places of bodies 1 and 2 follow two lines, and one of the ground follows none."""
     numbers, kind = blocks(d), kinds(d).line
     two, one = found(d, 1, 2, count=2), found(d, 0, 1)
-    places = Found(*(np.concatenate([a, b]) for a, b in zip(two, one, strict=True)))
+    places = ContactPlaces(*(np.concatenate([a, b]) for a, b in zip(two, one, strict=True)))
     old = rows(kind, 3, k=1e4, k_s=k_s, friction=0.5)
     for i in range(2):
         handover.write_line(old[i], i, 0.0, two, numbers)

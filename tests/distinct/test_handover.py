@@ -6,7 +6,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.distinct.rows import kinds, rows
-from mjrock.distinct.search.finder import Found
+from mjrock.distinct.search.finder import ContactPlaces
 from mjrock.distinct.search.handover import Lines, press
 from mjrock.distinct.search.pair_law import least_among
 
@@ -46,7 +46,7 @@ def test_the_least_share_of_a_pair_is_that_of_its_softest_line():
 def test_what_presses_follows_the_lines_before_it_and_gains_no_energy():
     """A stiffer place starts with the force, a softer one with the energy of the line before it."""
     kind = kinds(2).line
-    found = Found(
+    found = ContactPlaces(
         np.array([0]), np.array([1]), np.zeros((1, 2)), np.zeros((1, 2)), np.array([-1.0]), np.ones(1), np.ones(1)
     )
     for stiffness, depth in ((2.0, 0.5), (1.0, 1.0), (0.81, 1 / 0.9)):

@@ -43,14 +43,14 @@ def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
     samples = samples.taken(slice(-1))
     np.testing.assert_allclose(samples.velocity[:, :, 0].sum(axis=1), SPEED, atol=1e-9)  # momentum
     apart = samples.pose[:, 1, 0] - samples.pose[:, 0, 0]
-    relative = samples.velocity[:, 1, 0] - samples.velocity[:, 0, 0]
+    relative_velocity = samples.velocity[:, 1, 0] - samples.velocity[:, 0, 0]
     t, w, decay = 5 * h * np.arange(count + 1), np.sqrt(2 * K / mass), C / mass
     taut = t < 0.9 * np.pi / w
     turning = np.sqrt(w**2 - decay**2)
     exact = SPEED / turning * np.exp(-decay * t) * np.sin(turning * t)
     assert taut.sum() > 20
     np.testing.assert_allclose(apart[taut], exact[taut], atol=2e-3 * exact.max())
-    assert relative.min() < -0.1
+    assert relative_velocity.min() < -0.1
     energy = samples.energy
     taken = samples.links[:, system.links[1].rows[0].account] + samples.dashpots.sum(axis=1)
     whole = energy["kinetic"] + energy["potential"] + energy["elastic"] + taken

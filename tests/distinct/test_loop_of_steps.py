@@ -12,7 +12,7 @@ from mjrock.distinct.kinds.actuators import Actuators
 from mjrock.distinct.kinds.lists import numbered
 from mjrock.distinct.kinds.ties import Ties
 from mjrock.distinct.loop import Clock
-from mjrock.distinct.rows import TAKEN_BY_LAWS
+from mjrock.distinct.rows import DISSIPATED_BY_LAWS
 from mjrock.distinct.supports import Supports
 from mjrock.distinct.system import Books, Samples
 from mjrock.scene.course import Ground, ground_velocity
@@ -360,7 +360,7 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     bond.k, bond.secant, bond.gap, bond.k_s, bond.grip[:] = 1.0, 900.0, -0.02, 300.0, 2e-3
     account.totals[0].friction, account.totals[0].ground = 7.0, 5.0
     account.dashpots[:] = 11.0
-    for name, taken in zip(TAKEN_BY_LAWS, range(1, 6), strict=True):
+    for name, taken in zip(DISSIPATED_BY_LAWS, range(1, 6), strict=True):
         account.totals[0][name] = taken
     loop.record_pose(whole, account, samples, 1, before)
     squares = (grip**2).sum(axis=1)
@@ -370,7 +370,7 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     assert sample.elastic == pytest.approx(0.1 + late.sum() + 0.5 * 900.0 * 4e-4 + sheared, rel=1e-12)
     assert sample.friction == pytest.approx(7.0 - sheared, rel=1e-12)
     assert (sample.ground, sample.driven, sample.potential) == (5.0, 0.0, 0.0)
-    assert [sample[name] for name in TAKEN_BY_LAWS] == [1.0, 2.0, 3.0, 4.0, 5.0]
+    assert [sample[name] for name in DISSIPATED_BY_LAWS] == [1.0, 2.0, 3.0, 4.0, 5.0]
     lines["push"][1], lines["pressed"][1] = -6.0, -2.0  # the dashpot pulls
     loop.record_pose(whole, account, samples, 0, before)
     by_spring = 0.5 * before * (-6.0 + 2.0) * 0.5

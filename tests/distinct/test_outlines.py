@@ -31,7 +31,7 @@ def test_the_outlines_of_a_joint_of_the_plane_are_the_two_whole_sides():
         np.testing.assert_allclose(sorted((outline.corners @ along).tolist()), ends, rtol=1e-12)
         np.testing.assert_allclose(outline.corners @ up, 0.0, atol=1e-12)
         np.testing.assert_allclose(outline.normal, normal, rtol=1e-12)
-        np.testing.assert_allclose(outline.ways, [-along, along], rtol=1e-12)
+        np.testing.assert_allclose(outline.edge_normals, [-along, along], rtol=1e-12)
 
 
 def test_the_outlines_of_a_joint_in_space_are_the_two_whole_faces():
@@ -47,7 +47,7 @@ def test_the_outlines_of_a_joint_in_space_are_the_two_whole_faces():
         np.testing.assert_allclose(outline.normal, [0.0, 0.0, normal], atol=1e-12)
         middle = outline.corners.mean(axis=0)
         following = np.roll(outline.corners, -1, axis=0)
-        for way, start, end in zip(outline.ways, outline.corners, following, strict=True):
+        for way, start, end in zip(outline.edge_normals, outline.corners, following, strict=True):
             assert way @ way == pytest.approx(1.0)
             assert way @ (start - middle) == pytest.approx(way @ (end - middle))
             assert way @ (start - middle) > 0

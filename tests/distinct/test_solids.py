@@ -28,7 +28,7 @@ def test_a_prism_is_the_hull_of_its_corners(of):
         np.testing.assert_allclose(turned / np.linalg.norm(turned), normal, atol=1e-12)
     assert solid.bulk.volume == pytest.approx(hull.volume, rel=1e-12)
     about = Solids.about([solid], np.zeros((1, 3)), block.inside, np.zeros(1, dtype=int), flat=True)
-    assert about.ways.shape == (0, 3)  # edges of the plane meet faces as their corners do
+    assert about.edges.shape == (0, 3)  # edges of the plane meet faces as their corners do
 
 
 @pytest.mark.parametrize("half", [0.01, 0.35, 40.0])

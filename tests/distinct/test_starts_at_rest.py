@@ -38,7 +38,7 @@ def test_friction_acts_halfway_into_the_overlap_in_the_search_for_rest_as_in_the
 @pytest.mark.parametrize("in_space", [False, True])
 def test_a_joint_that_is_handed_over_at_the_start_keeps_its_friction(in_space, monkeypatch):
     """No step has been made yet, and lines know from the search for rest alone what they carry."""
-    monkeypatch.setattr(contact_search, "LEFT_JOINT", -1.0)
+    monkeypatch.setattr(contact_search, "HANDOVER_OPENING", -1.0)
     masonry = on_a_slope(BOX, in_space=in_space, k_s=0.4 * K_N)  # of no other test, since what stands is kept
     run = mr.solve_explicit(mr.MasonryCase(masonry, 0.1), output_step=1e-3, forces=True)
     assert not run.forces.normal.any()  # those of a joint that still serves

@@ -8,7 +8,7 @@ import pytest
 from by_hand import PLACE, SPIN, VELOCITY, matrix, system
 
 from mjrock.distinct.search import validity
-from mjrock.distinct.search.finder import Found
+from mjrock.distinct.search.finder import ContactPlaces
 from mjrock.distinct.search.handover import Blocks
 from mjrock.distinct.search.solids import Poses
 from mjrock.distinct.search.validity import JointState, Limits, Motion, Validity
@@ -261,7 +261,7 @@ def found_places(d, pairs, gap):
     """Places of pairs of blocks."""
     face, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
     each = np.ones(len(gap))
-    return Found(face, other, np.zeros((len(gap), d)), np.zeros((len(gap), d)), np.array(gap), each, each)
+    return ContactPlaces(face, other, np.zeros((len(gap), d)), np.zeros((len(gap), d)), np.array(gap), each, each)
 
 
 def valid_times(found, motion, sizes, outdated=(0, 1, 2), valid_for=9.0):

@@ -98,7 +98,7 @@ def test_impratio_is_the_largest_that_no_friction_row_forbids(held, impratio):
         places=points.places._replace(k=np.full(2, 1e-9), c=c),
         weight=np.full(2, 0.01),
         resolved=np.full(2, METHOD.borne),
-        held=np.array(held),
+        friction_inertia=np.array(held),
         growth=0.0,
     )
     found = set_rows(points, Step(H, none, none), rows)

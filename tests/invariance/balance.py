@@ -12,7 +12,7 @@ import mjrock as mr
 from mjrock.problem.masonry.effects import with_added_masses
 from mjrock.problem.masonry.histories import motions_of_tilt
 from mjrock.result.bodies import BodyMotion
-from mjrock.result.ties import across
+from mjrock.result.ties import link_vector
 
 
 def is_stepwise(answer: mr.Response) -> bool:
@@ -120,7 +120,7 @@ def device_forces(answer: mr.Response) -> np.ndarray:
     total = np.zeros((len(answer.t), len(row), 3 if answer.in_space else 2))
     for name, pull in kept.links.items():
         link = case.links[name]
-        way = across(BodyMotion(case, answer.t, answer.pose), link)
+        way = link_vector(BodyMotion(case, answer.t, answer.pose), link)
         force = -pull[:, None] * way / np.linalg.norm(way, axis=1)[:, None]
         total[:, row[link.block]] += force
         if link.anchor_block in row:

@@ -30,7 +30,7 @@ def meetings_in(masonry, by=(0.0, 0.0, 0.0)):
     solids, count = standing.solids, len(standing.solids)
     moved = SHAKEN * np.random.default_rng(1).standard_normal((count, 3))
     poses = Poses(np.array([solid.rest for solid in solids]), moved, np.zeros((count, 3, 3)))
-    found = Finder(solids, flat=False).found(poses, np.full(count, 1e-3), np.ones(count, dtype=bool), NONE)
+    found = Finder(solids, flat=False).places_near(poses, np.full(count, 1e-3), np.ones(count, dtype=bool), NONE)
     pair = pair_number(found.face, found.other, count)
     joined = [pair_number(joint.below, joint.above, count) for joint in standing.joints]
     pairs, of = np.unique(pair, return_inverse=True)

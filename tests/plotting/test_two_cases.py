@@ -12,7 +12,7 @@ from mjrock.plotting.bodies import Bodies
 from mjrock.plotting.solids import Rendering
 from mjrock.plotting.wall import tie_texts
 from mjrock.result.bodies import bodies_of
-from mjrock.result.compare import paired, taken_by
+from mjrock.result.compare import of_impacts, paired
 from mjrock.result.rocking import Impact
 
 WALL = mr.Block.from_size(thickness=0.6, height=4.2)
@@ -108,7 +108,7 @@ def test_impacts_are_paired_by_time():
     pairs = paired(left, impacts(1.45, 2.0, 3.05), 0.1, 1.0)
     assert pairs.tolist() == [[0, -1], [1, 0], [-1, 1], [3, 2]]
     np.testing.assert_array_equal(
-        taken_by(pairs, [1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0]), [[1, np.nan], [2, 5], [np.nan, 6], [4, 7]]
+        of_impacts(pairs, [1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0]), [[1, np.nan], [2, 5], [np.nan, 6], [4, 7]]
     )
     assert paired([], impacts(1.0), 0.1, 1.0).tolist() == [[-1, 0]]
     assert paired([], [], 0.1, 1.0).shape == (0, 2)

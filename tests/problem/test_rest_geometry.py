@@ -148,8 +148,8 @@ def test_the_faces_of_a_joint_of_masonry_hold_it(in_space):
         for face, normal in zip(faces, (joint.normal, -joint.normal), strict=True):
             assert face.normal @ normal > 1 - 1e-3
             middle = face.corners.mean(axis=0)
-            reach = ((face.corners - middle) @ face.ways.T).max(axis=0)
-            assert ((outline - middle) @ face.ways.T <= reach + 1e-9).all()
+            reach = ((face.corners - middle) @ face.edge_normals.T).max(axis=0)
+            assert ((outline - middle) @ face.edge_normals.T <= reach + 1e-9).all()
 
 
 def test_springs_of_joints():

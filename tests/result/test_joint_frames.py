@@ -5,7 +5,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.result.bodies import BodyMotion
-from mjrock.result.ties import across
+from mjrock.result.ties import link_vector
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,7 @@ def test_a_tie_of_a_wall_holds_its_inner_face():
     """Turned about its outer toe, at half the thickness outwards."""
     wall = mr.Block.from_size(thickness=0.5, height=4.0, length=2.0, density=1800.0)
     case, turn = mr.Case(wall, 0.0, 1.0, motion=mr.GroundMotion.rectangular(1.0, 0.5), effects=mr.Tie(3.0, 1e6)), 0.1
-    way = across(BodyMotion(case, np.zeros(1), wall.pose(np.array([turn]))[None]), case.links["tie_0"])[0]
+    way = link_vector(BodyMotion(case, np.zeros(1), wall.pose(np.array([turn]))[None]), case.links["tie_0"])[0]
     sine, cosine = np.sin(turn), np.cos(turn)
     outwards = case.links["tie_0"].length + 0.25 - 0.5 * cosine + 3.0 * sine + 0.25
     np.testing.assert_allclose(way, (outwards, 0.5 * sine + 3.0 * cosine - 3.0), atol=1e-12)

@@ -194,11 +194,11 @@ def test_the_independent_solver_stands_still_on_the_curve(effects, points):
         n = int(np.argmin(np.abs(held.pose[:, 2] - theta)))
         push = float(held.force[n]) / case.wall.mass
         shaken = mr.Case(block, 0.0, 1.0, effects=chosen, motion=mr.GroundMotion(np.full(3, -push), 1.0))
-        rates = Wall(shaken, base).held(0.5, np.append(held.pose[n], np.zeros(3)))
+        rates = Wall(shaken, base).sticking(0.5, np.append(held.pose[n], np.zeros(3)))
         assert np.abs(rates[3:] * (1, 1, H)).max() < 2e-5 * G
     # the twin that must fail: another acceleration moves it
     shaken = mr.Case(block, 0.0, 1.0, effects=chosen, motion=mr.GroundMotion(np.full(3, -1.02 * push), 1.0))
-    rates = Wall(shaken, base).held(0.5, np.append(held.pose[n], np.zeros(3)))
+    rates = Wall(shaken, base).sticking(0.5, np.append(held.pose[n], np.zeros(3)))
     assert np.abs(rates[3:] * (1, 1, H)).max() > 1e-4 * G
 
 

@@ -17,7 +17,7 @@ from masonry_blocks import GROUND, box
 import mjrock as mr
 from mjrock.problem.masonry.rigid_stack import RigidStack
 from mjrock.scene.masonry import masonry_course
-from mjrock.theory.impact import as_one
+from mjrock.theory.impact import rigid_rocking
 
 
 def lost(pile, pose):
@@ -25,7 +25,7 @@ def lost(pile, pose):
     theta = pose[:, :, 2] @ pile.masses / pile.masses.sum()
     alpha = pile.alpha(1)
     left = (math.cos(alpha + theta.min()) - math.cos(alpha)) / (math.cos(alpha - theta.max()) - math.cos(alpha))
-    return (1 - left) / (1 - as_one(pile).base ** 2)
+    return (1 - left) / (1 - rigid_rocking(pile).base ** 2)
 
 
 @pytest.mark.parametrize(

@@ -53,55 +53,55 @@ class Meeting(NamedTuple):
 
 
 @inlined
-def over_face(system: System, line: Row) -> tuple[Vector, Vector, Vector, Vector]:
+def position_over_face(system: System, line: Row) -> tuple[Vector, Vector, Vector, Vector]:
     """Position of the point of a line relative to its face, the normal of the face, and the arms, see `Meeting`."""
     body, at, normal = system.bodies[line.body], read(line.at), read(line.normal)
     change = rotation_change(body, at)
-    arm, across = plus(at, change), plus(read(line.between), plus(read(body.place), change))
+    arm, offset = plus(at, change), plus(read(line.between), plus(read(body.place), change))
     face_arm = arm
     if line.face >= 0:
         face, origin = system.bodies[line.face], read(line.origin)
         change = rotation_change(face, origin)
-        across = minus(across, plus(read(face.place), change))
-        face_arm = plus(plus(origin, change), across)
+        offset = minus(offset, plus(read(face.place), change))
+        face_arm = plus(plus(origin, change), offset)
         normal = plus(normal, rotation_change(face, normal))
     else:
         if line.support >= 0:
-            across = minus(across, vector(system.supports.moved, line.support, at))
+            offset = minus(offset, vector(system.supports.moved, line.support, at))
         if line.face == POINT_ON_FIXED_BLOCK:
-            normal, arm = in_world(body, normal), minus(arm, across)
-    return across, normal, arm, face_arm
+            normal, arm = in_world(body, normal), minus(arm, offset)
+    return offset, normal, arm, face_arm
 
 
 @inlined
 def meeting(system: System, line: Row) -> Meeting:
     """Where a line is."""
     body = system.bodies[line.body]
-    across, normal, arm, face_arm = over_face(system, line)
-    gap = dot(normal, across)
+    offset, normal, arm, face_arm = position_over_face(system, line)
+    gap = dot(normal, offset)
     if gap < 0 and line.margin < math.inf:
         turned = may_face_away(body) or (line.face >= 0 and may_face_away(system.bodies[line.face]))
         if turned and dot(normal, in_world(body, read(line.normal))) < 0:
             return Meeting(TURNED_OVER, normal, arm, face_arm, True)
-        if dot(across, across) - gap * gap > line.margin:
-            return at_the_end(system, line, across, Meeting(gap, normal, arm, face_arm, False))
+        if dot(offset, offset) - gap * gap > line.margin:
+            return past_face_edge(system, line, offset, Meeting(gap, normal, arm, face_arm, False))
     return Meeting(gap, normal, arm, face_arm, False)
 
 
 @inlined
-def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meeting:
-    """Where a line is that may have moved past the outline of its face, `across` from its place there at rest [m]."""
+def past_face_edge(system: System, line: Row, offset: Vector, meet: Meeting) -> Meeting:
+    """Where a line is that may have moved past the outline of its face, `offset` from its place there at rest [m]."""
     fixed = line.face < 0
     face, body = system.bodies[max(line.face, 0)], system.bodies[line.body]
-    reached = plus(read(line.origin), across if fixed else in_body(face, across))
+    reached = plus(read(line.origin), offset if fixed else in_body(face, offset))
     inside, share = pulled_inside(system.edges, line.first, line.last, reached)
     if share == 0:
         return meet
     over = minus(reached, inside)
-    apart = plus(scaled(meet.gap, meet.normal), over if fixed else in_world(face, over))  # from the outline
+    from_outline = plus(scaled(meet.gap, meet.normal), over if fixed else in_world(face, over))  # from the outline
     own = in_world(body, read(line.normal))
-    gap = dot(own, apart)
-    along = minus(apart, scaled(gap, own))
+    gap = dot(own, from_outline)
+    along = minus(from_outline, scaled(gap, own))
     place = minus(read(line.at), in_body(body, along))
     if is_beside(system.edges, line.own_first, line.own_last, place):
         gap = GAP_OF_OPEN
@@ -111,7 +111,7 @@ def at_the_end(system: System, line: Row, across: Vector, meet: Meeting) -> Meet
 
 
 @inlined
-def relative(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> Vector:
+def relative_velocity(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> Vector:
     """Velocity of the point of a line over the face [m/s]."""
     body = bodies[line.body]
     velocity = plus(read(body.velocity), spun(read(body.spin), meet.arm))
@@ -133,7 +133,7 @@ def where_friction_rubs(meet: Meeting) -> Meeting:
 
 
 @inlined
-def lost_at_the_end(line: Row, meet: Meeting, opened: float) -> float:
+def lost_past_face_edge(line: Row, meet: Meeting, opened: float) -> float:
     """Energy that a line has lost in the last step because it was past the end of its face before or after it [J]: the
     decrease of its spring energy minus the work it has done while the gap grew by some length [m].
 
@@ -173,7 +173,7 @@ def press_lines(system: System, books: Books, h: float, kick: float, lead: float
                 put(line.grip, no_spin(meet.normal))
                 continue
         meet = where_friction_rubs(meet)
-        velocity = relative(bodies, line, supports, meet)
+        velocity = relative_velocity(bodies, line, supports, meet)
         rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
         sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
         if lead > 0 and push > 0 and line.push > 0:
@@ -185,7 +185,7 @@ def press_lines(system: System, books: Books, h: float, kick: float, lead: float
                 touched += 1
         books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
         if meet.past or line.past == 1:
-            books.totals[0].joint_ends += lost_at_the_end(line, meet, h * rate)
+            books.totals[0].joint_ends += lost_past_face_edge(line, meet, h * rate)
         last, drag = read(line.dragged), no_spin(meet.normal)
         if push <= 0:
             if push < 0 and line.push > 0:
@@ -225,14 +225,14 @@ def settle_touches(system: System, books: Books, count: int, kick: float) -> tup
     Returns the energy that the halves of these impulses before the pose have taken, which a sample counts as held by
     the springs, and the work of the supports through them [J].
     """
-    taken, put_in = 0.0, 0.0
+    stored_energy, put_in = 0.0, 0.0
     for i in range(count):
         books.impulse[i] = 0.0
     for _ in range(TOUCH_PASSES):
         for i in range(count):
             line = system.lines[books.touched[i]]
             meet = meeting(system, line)
-            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
+            rate = dot(meet.normal, relative_velocity(system.bodies, line, system.supports, meet))
             books.remaining[i] = due_impulse(line, rate) - books.impulse[i]
         for i in range(count):
             line, impulse = system.lines[books.touched[i]], books.remaining[i]
@@ -247,6 +247,6 @@ def settle_touches(system: System, books: Books, count: int, kick: float) -> tup
             impulse = 0.5 * books.impulse[i]
             put_in += carried(line, system.supports, scaled(impulse, meeting(system, line).normal))
         line.push, line.due = line.push + books.impulse[i] / kick, 0.0
-        taken -= 0.5 * books.impulse[i] * line.rate
+        stored_energy -= 0.5 * books.impulse[i] * line.rate
     books.totals[0].ground += put_in
-    return taken, put_in
+    return stored_energy, put_in

@@ -38,15 +38,15 @@ def edges_of(faces: Sequence[Face], origins: Array, met: Sequence[Face]) -> tupl
     shapes = np.array([(len(one.edge_normals), len(one.corners), len(other.corners)) for one, other in pairs])
     for shape in np.unique(shapes, axis=0):
         which = np.flatnonzero((shapes == shape).all(axis=1)).tolist()
-        ways, corners, others = (
+        normals, corners, others = (
             np.array(each)
             for each in zip(*((faces[i].edge_normals, faces[i].corners, met[i].corners) for i in which), strict=True)
         )
-        along = ways.swapaxes(1, 2)
+        along = normals.swapaxes(1, 2)
         places = (corners - origins[which][:, None]) @ along  # (faces, corners, edges)
         extent = np.minimum(np.ptp(places, axis=1), np.ptp(others @ along, axis=1))
-        of = begin[which][:, None] + np.arange(len(ways[0]))
-        edges["way"][of], edges["reach"][of] = ways, places.max(axis=1) + OVERHANG * extent
+        of = begin[which][:, None] + np.arange(len(normals[0]))
+        edges["way"][of], edges["reach"][of] = normals, places.max(axis=1) + OVERHANG * extent
         edges["band"][of] = OVERHANG * (1 + 2 * OVERHANG) * extent
     return edges, begin
 
@@ -81,10 +81,10 @@ def pulled_inside(edges: Rows, first: int, last: int, place: Vector) -> tuple[Ve
     for sweep in range(ROUNDS):
         for i in range(first, last):
             edge = edges[i]
-            way = components(edge.way, place)
-            excess = dot(way, inside) - edge.reach
+            outwards = components(edge.way, place)
+            excess = dot(outwards, inside) - edge.reach
             if excess > 0:
-                inside = minus(inside, scaled(excess, way))
+                inside = minus(inside, scaled(excess, outwards))
                 if sweep == 0:
                     share = max(share, excess / edge.band)
     return inside, share

@@ -1,14 +1,13 @@
-"""Friction along a face: one way in the plane, two in space.
+"""Friction along a face: one tangential direction in the plane, two in space.
 
-A line with a shear stiffness has a spring with a slider, as in distinct-element codes: its force is at most the
-friction that the face can carry. The line keeps the elongation of the spring, in the plane a number along the face and
-in space a vector in the axes of the face.
+A line with a shear stiffness has a spring in series with a slider, as in distinct-element codes: its force is at most
+the friction that the face can carry. The line stores the elongation of the spring, in the plane a number along the face
+and in space a vector in the axes of the face.
 
-A line that sticks rigidly gets an impulse along its face that stops the slip, as far as Coulomb's law lets it. The
-impulses of all lines are found by projected Gauss-Seidel: one line after the other gets the impulse that stops its
-slip, until the impulses no longer change. They start from those of the last step. In space, where this impulse exceeds
-the friction that the face can carry, the point gets that friction against its slip instead. After the sweeps the
-friction of a point that slips is against its slip.
+A line that sticks rigidly gets an impulse along its face that stops the slip, within the limit of Coulomb's law. The
+impulses of all lines are found by projected Gauss-Seidel, from those of the last step on: one line after the other gets
+the impulse that stops its slip, until the impulses no longer change. In space a line whose impulse would exceed the
+limit gets the friction of the limit against its slip.
 """
 
 from __future__ import annotations
@@ -46,16 +45,16 @@ SETTLED = 1e-3
 """Change of an impulse in a sweep, over the friction that the most loaded line can carry, below which the sweeps end
 [-]."""
 STRIDE = 3
-"""Lines from one that a sweep takes to the next."""
+"""Distance, in numbers of lines, from one line of a sweep to the next."""
 ROUNDED_ALONG = 1e-16
 """Square of the part of a vector along a normal, over that of the vector, below which it is rounding [-]."""
 COMPLIANCE_OF_GUIDED = 1e-9
-"""Least compliance of a body that a guide holds, over that of its mass [-]."""
+"""Least compliance of a guided body, over that of its mass [-]."""
 
 
 @inlined
 def along_face(normal: Vector, a: Vector) -> Vector:
-    """The part of a vector along a face: a number along its tangent in the plane, where it stays, a vector in space."""
+    """The part of a vector along a face: in the plane a number along the tangent, in space a vector. A number stays."""
     if len(a) == 1:
         return a
     if len(a) == 2:
@@ -73,8 +72,8 @@ def as_vector(normal: Vector, a: Vector) -> Vector:
 
 @inlined
 def turned_along(normal: Vector, a: Vector) -> Vector:
-    """A vector that lay along a face, along it again after the normal has turned a little: in the plane a number, which
-    stays, in space its part along the face, as long as it was."""
+    """A tangential vector of a face after the face has turned: in the plane a number, which stays, in space its part
+    along the face, scaled to its length before."""
     if len(a) == 1:
         return a
     off = dot(normal, a)
@@ -86,7 +85,7 @@ def turned_along(normal: Vector, a: Vector) -> Vector:
 
 @inlined
 def shortened(a: Vector, limit: float) -> Vector:
-    """A vector that is no longer than a limit."""
+    """A vector, shortened to a limit if it is longer."""
     if len(a) == 1:
         return (min(max(a[0], -limit), limit),)
     square = dot(a, a)
@@ -94,29 +93,29 @@ def shortened(a: Vector, limit: float) -> Vector:
 
 
 @inlined
-def carried(row: Row, supports: Supports, way: Vector) -> float:
-    """Velocity along a vector of the support that carries a line or one of its ways, zero where no support does."""
+def carried(row: Row, supports: Supports, direction: Vector) -> float:
+    """Velocity along a direction of the support that carries a line, zero for a line without a support [m/s]."""
     if row.support < 0:
         return 0.0
-    return dot(way, vector(supports.moving, row.support, way))
+    return dot(direction, vector(supports.moving, row.support, direction))
 
 
 @inlined
-def stretched(bodies: Rows, face: int, grip: Array, normal: Vector, way: Vector) -> Vector:
-    """Elongation of a shear spring in the axes of its face, after a displacement along the face [m]."""
+def stretched(bodies: Rows, face: int, grip: Array, normal: Vector, displacement: Vector) -> Vector:
+    """Elongation of a shear spring in the axes of the world, after a displacement along the face [m]."""
     kept = spin_components(grip, normal)
     if face >= 0:
         kept = in_world(bodies[face], kept)
-    return plus(turned_along(normal, kept), way)
+    return plus(turned_along(normal, kept), displacement)
 
 
 @inlined
 def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push: float, time: float) -> Vector:
-    """Force of the shear spring with its slider and dashpot along the face [N]. The last velocity has stretched it for
-    as long as the line was closed in the last step [s].
+    """Force along the face of the shear spring with its slider and dashpot [N].
 
-    The slider limits the spring to the friction that the face can carry, and then the sum of spring and dashpot to the
-    same. A dashpot that alone exceeds it leaves the spring as it is, since a longer spring would add energy.
+    The slip of the last step stretches the spring for the time in which the line was closed [s]. The friction that the
+    face can carry limits first the force of the spring, then the sum of spring and dashpot. Where the dashpot alone
+    exceeds the limit, the spring stays as it is, since a longer spring would add energy.
     """
     limit = shear_limit(line, push)
     grip = shortened(stretched(bodies, line.face, line.grip, normal, scaled(time, slip)), limit / line.k_s)
@@ -129,7 +128,7 @@ def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push:
 
 @inlined
 def sheared(line: Row) -> float:
-    """Energy in the shear spring of a line, or of a law of its joint [J]. Rigid friction holds none."""
+    """Energy in the shear spring of a line, or of a law of its joint [J], zero for rigid friction."""
     if line.k_s == math.inf:
         return 0.0
     grip = read(line.grip)
@@ -147,34 +146,34 @@ def last_friction(bodies: Rows, line: Row, dragged: Vector) -> Vector:
 
 
 @inlined
-def inverse_mass_along(body: Row, way: Vector) -> float:
-    """Velocity that a unit impulse along a unit vector gives to the centroid of a body along it [1/kg].
+def inverse_mass_along(body: Row, direction: Vector) -> float:
+    """Velocity of the centroid of a body along a unit vector by a unit impulse along it [1/kg].
 
-    It is not quite zero of a body that a guide holds, so that it can be divided by.
+    For a guided body it is a small number instead of zero, so that it can be divided by.
     """
-    inverse_mass: float = dot(way, times(read(body.inverse_mass), way))
+    inverse_mass: float = dot(direction, times(read(body.inverse_mass), direction))
     return inverse_mass if inverse_mass * body.mass > COMPLIANCE_OF_GUIDED else COMPLIANCE_OF_GUIDED / body.mass
 
 
 @inlined
-def list_way(
-    system: System, line: Row, number: int, way: Vector, arm: Vector, face_arm: Vector, velocity: Vector
+def list_direction(
+    system: System, line: Row, number: int, direction: Vector, arm: Vector, face_arm: Vector, velocity: Vector
 ) -> None:
-    """Prepare one way of a line that sticks rigidly, see `list_rigid`."""
+    """Prepare one tangential direction of a line that sticks rigidly, see `list_rigid`."""
     row, body, on_face = system.ways[number], system.bodies[line.body], line.face >= 0
-    row.body, row.face, row.support, row.slip = line.body, line.face, line.support, dot(way, velocity)
-    lever = moment(arm, way)
+    row.body, row.face, row.support, row.slip = line.body, line.face, line.support, dot(direction, velocity)
+    lever = moment(arm, direction)
     spin = spin_from_many(body, lever)
-    put(row.way, way)
+    put(row.way, direction)
     put(row.lever, lever)
     put(row.spin, spin)
-    compliance = inverse_mass_along(body, way) + dot(lever, spin)
+    compliance = inverse_mass_along(body, direction) + dot(lever, spin)
     if on_face:
-        face, lever = system.bodies[line.face], moment(face_arm, way)
+        face, lever = system.bodies[line.face], moment(face_arm, direction)
         spin = spin_from_many(face, lever)
         put(row.lever_on_face, lever)
         put(row.spin_of_face, spin)
-        compliance += inverse_mass_along(face, way) + dot(lever, spin)
+        compliance += inverse_mass_along(face, direction) + dot(lever, spin)
     row.compliance = compliance
 
 
@@ -193,12 +192,12 @@ def swept(system: System, line: Row, arm: Vector, face_arm: Vector) -> Vector:
 def list_rigid(
     system: System, line: Row, first: int, normal: Vector, arms: tuple[Vector, Vector], velocity: Vector, h: float
 ) -> None:
-    """Prepare the ways of a line that sticks rigidly.
+    """Prepare the tangential directions of a line that sticks rigidly.
 
     Args:
-        system: the bodies, and the room for the ways.
+        system: the bodies, and the room for the directions.
         line: the line.
-        first: number of its first way.
+        first: number of its first direction.
         normal: of its face.
         arms: from the two centroids to where friction acts [m].
         velocity: of the point there against its face, before the forces act [m/s].
@@ -207,13 +206,13 @@ def list_rigid(
     arm, face_arm = arms
     a, drift = system.ways[first], scaled(0.5 * h, swept(system, line, arm, face_arm))
     if len(normal) == 2:
-        list_way(system, line, first, tangent(normal), arm, face_arm, velocity)
+        list_direction(system, line, first, tangent(normal), arm, face_arm, velocity)
         a.stiffness, a.drift = 1 / a.compliance, dot(tangent(normal), drift)
         return
-    b, (way, other) = system.ways[first + 1], tangents(normal)
-    list_way(system, line, first, way, arm, face_arm, velocity)
-    list_way(system, line, first + 1, other, arm, face_arm, velocity)
-    a.drift, b.drift = dot(way, drift), dot(other, drift)
+    b, (first_tangent, second_tangent) = system.ways[first + 1], tangents(normal)
+    list_direction(system, line, first, first_tangent, arm, face_arm, velocity)
+    list_direction(system, line, first + 1, second_tangent, arm, face_arm, velocity)
+    a.drift, b.drift = dot(first_tangent, drift), dot(second_tangent, drift)
     a.coupling = dot(read(a.lever), read(b.spin))
     if line.face >= 0:
         a.coupling += dot(read(a.lever_on_face), read(b.spin_of_face))
@@ -223,20 +222,21 @@ def list_rigid(
 
 @inlined
 def slip_along(system: System, row: Row) -> float:
-    """Velocity along a way of a line that sticks rigidly [m/s]."""
-    body, way = system.bodies[row.body], read(row.way)
-    slip = dot(way, read(body.velocity))
+    """Slip along a tangential direction of a line that sticks rigidly [m/s]."""
+    body, direction = system.bodies[row.body], read(row.way)
+    slip = dot(direction, read(body.velocity))
     slip += dot(read(row.lever), read(body.spin))
     if row.face >= 0:
         face = system.bodies[row.face]
-        slip -= dot(way, read(face.velocity))
+        slip -= dot(direction, read(face.velocity))
         slip -= dot(read(row.lever_on_face), read(face.spin))
-    return slip - carried(row, system.supports, way)
+    return slip - carried(row, system.supports, direction)
 
 
 @inlined
-def along_ways(impulses: Vector, first: Vector, second: Vector) -> Vector:
-    """Effect of impulses along the ways of a line, from that of a unit impulse along each; the plane has one way."""
+def combined(impulses: Vector, first: Vector, second: Vector) -> Vector:
+    """Effect of impulses along the tangential directions of a line, from that of a unit impulse along each. The plane
+    has one direction."""
     if len(impulses) == 1:
         return scaled(impulses[0], first)
     return plus(scaled(impulses[0], first), scaled(impulses[1], second))
@@ -244,30 +244,30 @@ def along_ways(impulses: Vector, first: Vector, second: Vector) -> Vector:
 
 @inlined
 def strike(system: System, first: int, impulses: Vector) -> None:
-    """Let impulses along the ways of a line act on the velocities of its body and of that of its face [N s]."""
+    """Apply impulses along the tangential directions of a line to its body and to that of its face [N s]."""
     a, b = system.ways[first], system.ways[first + len(impulses) - 1]
-    body, kick = system.bodies[a.body], along_ways(impulses, read(a.way), read(b.way))
+    body, kick = system.bodies[a.body], combined(impulses, read(a.way), read(b.way))
     apply_impulse(body, kick)
-    increase(body.spin, along_ways(impulses, read(a.spin), read(b.spin)))
+    increase(body.spin, combined(impulses, read(a.spin), read(b.spin)))
     if a.face >= 0:
         face = system.bodies[a.face]
         apply_impulse(face, scaled(-1.0, kick))
-        spin = along_ways(impulses, read(a.spin_of_face), read(b.spin_of_face))
+        spin = combined(impulses, read(a.spin_of_face), read(b.spin_of_face))
         increase(face.spin, scaled(-1.0, spin))
 
 
 @inlined
 def impulses_of(system: System, first: int, like: Vector) -> Vector:
-    """The impulses along the ways of a line [N s]."""
+    """The impulses along the tangential directions of a line [N s]."""
     if len(like) == 2:
         return (system.ways[first].impulse,)
     return system.ways[first].impulse, system.ways[first + 1].impulse
 
 
 @inlined
-def begin(system: System, line: Row, first: int, held: float, kick: float, like: Vector) -> None:
-    """Let the ways of a line start with the friction of the last step, limited to what the face can carry now [N]."""
-    limit: float = kick * held
+def begin(system: System, line: Row, first: int, friction: float, kick: float, like: Vector) -> None:
+    """Start the impulses of a line from the friction of the last step, within what the face can carry now [N]."""
+    limit: float = kick * friction
     grip = scaled(kick, read(line.grip))
     if line.face >= 0:
         grip = in_world(system.bodies[line.face], grip)
@@ -283,9 +283,9 @@ def begin(system: System, line: Row, first: int, held: float, kick: float, like:
 
 @inlined
 def stopping(system: System, first: int, like: Vector) -> Vector:
-    """The impulses along its ways that stop the slip of a line in the middle of the step, within its friction [N s].
+    """The impulses that stop the slip of a line in the middle of the step, within its friction [N s].
 
-    The slip before the forces act is then the negative of that after them, so that a line that sticks dissipates no
+    The slip after the forces have acted is then the negative of that before, so that a line that sticks dissipates no
     energy and stays where it is.
     """
     a = system.ways[first]
@@ -294,20 +294,20 @@ def stopping(system: System, first: int, like: Vector) -> Vector:
         return shortened((a.impulse - slip * a.stiffness,), limit)
     b = system.ways[first + 1]
     other = slip_along(system, b) + b.drift
-    along = a.impulse - (a.stiffness * slip - a.shared * other)
-    across = b.impulse - (b.stiffness * other - a.shared * slip)
-    if along * along + across * across > limit * limit:  # it slips, and friction is against the slip
+    impulse = a.impulse - (a.stiffness * slip - a.shared * other)
+    other_impulse = b.impulse - (b.stiffness * other - a.shared * slip)
+    if impulse * impulse + other_impulse * other_impulse > limit * limit:  # it slips, and friction is against the slip
         half = 0.5 * (a.compliance - b.compliance)
         loosest = 0.5 * (a.compliance + b.compliance) + math.sqrt(half * half + a.coupling * a.coupling)
-        along, across = a.impulse - slip / loosest, b.impulse - other / loosest
-        shorter = min(1.0, limit / math.sqrt(along * along + across * across))
-        along, across = shorter * along, shorter * across
-    return along, across
+        impulse, other_impulse = a.impulse - slip / loosest, b.impulse - other / loosest
+        shorter = min(1.0, limit / math.sqrt(impulse * impulse + other_impulse * other_impulse))
+        impulse, other_impulse = shorter * impulse, shorter * other_impulse
+    return impulse, other_impulse
 
 
 @inlined
 def stop(system: System, first: int, like: Vector) -> float:
-    """Stop the slip of one line within its friction. Returns by how much its impulses have changed [N s]."""
+    """Stop the slip of one line within its friction. Returns the largest change of its impulses [N s]."""
     impulses = stopping(system, first, like)
     change = minus(impulses, impulses_of(system, first, like))
     strike(system, first, change)
@@ -320,10 +320,10 @@ def stop(system: System, first: int, like: Vector) -> float:
 
 @inlined
 def stick(system: System, active: Integers, count: int, kick: float) -> None:
-    """Stop the slip of the lines that stick rigidly. Their impulses are left in the ways [N s].
+    """Stop the slip of the lines that stick rigidly. Their impulses are in the rows of their directions [N s].
 
     Neighbouring lines share their bodies, so that the processor would wait for each before the next: a sweep takes
-    every third line, then the next ones.
+    every third line, then those after them, and then the rest.
     """
     like = read(system.bodies[0].place)
     each, largest = len(like) - 1, 0.0
@@ -350,11 +350,11 @@ def keep_rigid(system: System, line: Row, first: int, kick: float, like: Vector)
         line.grip[0] = impulses[0] / kick
         return
     a, b = system.ways[first], system.ways[first + 1]
-    lever = along_ways(impulses, read(a.lever), read(b.lever))
+    lever = combined(impulses, read(a.lever), read(b.lever))
     add_momentum(system.bodies[a.body], lever)
-    grip = scaled(1 / kick, along_ways(impulses, read(a.way), read(b.way)))
+    grip = scaled(1 / kick, combined(impulses, read(a.way), read(b.way)))
     if a.face >= 0:
-        lever = along_ways(impulses, read(a.lever_on_face), read(b.lever_on_face))
+        lever = combined(impulses, read(a.lever_on_face), read(b.lever_on_face))
         add_momentum(system.bodies[a.face], scaled(-1.0, lever))
         grip = in_body(system.bodies[a.face], grip)
     put(line.grip, grip)

@@ -77,7 +77,7 @@ def mass_of_bending(line: Row, depth: float, since: float) -> float:
 def forces_of_leaving(line: Row, gap: float, rate: float, h: float) -> tuple[float, float]:
     """`touched_forces` of a line that was closed at the last pose."""
     sprung, push = normal_force(line, gap, 0.0), normal_force(line, gap, rate)
-    held = normal_force(line, -line.depth, line.rate)
+    force_before = normal_force(line, -line.depth, line.rate)
     if gap > 0:
         gap = h * rate - line.depth
         if gap <= 0:  # it has come to an end of its face
@@ -85,12 +85,12 @@ def forces_of_leaving(line: Row, gap: float, rate: float, h: float) -> tuple[flo
         since = line.depth / rate
         stiffness = secant_stiffness(line, line.depth)
         mass = 0.5 * stiffness * since * (h - since) + mass_of_bending(line, line.depth, since)
-        if held == 0:  # the dashpot has held the spring back, and takes what it held
+        if force_before == 0:  # the dashpot has held the spring back, and takes what it held
             return -2 * mass * rate / h, 0.0
         sprung, line.due = -mass * rate / h, mass
     pull = secant_stiffness(line, abs(gap)) * gap + line.c * rate  # the law, if it could pull
-    if held > 0 and pull > 0:
-        push = -0.5 * held * pull / (held + pull)
+    if force_before > 0 and pull > 0:
+        push = -0.5 * force_before * pull / (force_before + pull)
     return sprung, push
 
 

@@ -48,7 +48,7 @@ class Actuators(Kind, Histories):
             return (), cls(cls.table(d, 0), moving((), 1))
         actuators = tuple(case.actuators.values())
         held = np.array([GROUND if each.block is None else case.body_of(each.block) for each in actuators])
-        way, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
+        direction, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
         at = np.array([each.way if each.at is None else each.at for each in actuators])
         at = np.where(single, at - bodies["rest"][held], 0.0)
         change = np.einsum("nij,nj->ni", rotations(bodies)[held], at)
@@ -58,10 +58,10 @@ class Actuators(Kind, Histories):
             len(actuators),
             body=held,
             at=at,
-            between=way,
+            between=direction,
             k=np.array([each.stiffness for each in actuators]),
             c=np.array([each.damping for each in actuators]),
-            reach=(np.where(single, bodies["place"][held] + change, mean) * way).sum(axis=1),
+            reach=(np.where(single, bodies["place"][held] + change, mean) * direction).sum(axis=1),
         )
         histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
         return tuple(case.actuators), cls(table, moving(histories, 1))
@@ -69,9 +69,9 @@ class Actuators(Kind, Histories):
     def rates(self, bodies: Rows) -> csr_array:
         """Rates of what they drive: a point, or the centroid of all."""
         mass = np.asarray(bodies["mass"])
-        ways = np.where((self.rows["body"] < 0)[:, None], self.rows["between"], 0.0)
-        turning = np.zeros((len(self.rows), 2 * ways.shape[1] - 3))
-        shares = np.hstack([ways, turning])[:, None] * (mass / mass.sum())[:, None]
+        directions = np.where((self.rows["body"] < 0)[:, None], self.rows["between"], 0.0)
+        turning = np.zeros((len(self.rows), 2 * directions.shape[1] - 3))
+        shares = np.hstack([directions, turning])[:, None] * (mass / mass.sum())[:, None]
         pairs = np.broadcast_to(np.arange(len(bodies)), shares.shape[:2])
         return csr_array(super().rates(bodies) + entries(shares, pairs, shares.shape[1] * shares.shape[2]))
 
@@ -101,15 +101,15 @@ class Actuators(Kind, Histories):
         drives = self.drives
         move_supports(drives, t, h)
         for i in range(len(self.rows)):
-            row, way = self.rows[i], read(self.rows[i].between)
-            moved, speed = driven_place(row, system.bodies, way)
+            row, direction = self.rows[i], read(self.rows[i].between)
+            moved, speed = driven_place(row, system.bodies, direction)
             rate = drives.moving[i, 0] - speed
             dragged = row.c * rate
             force = row.k * (drives.moved[i, 0] - (moved - row.reach)) + dragged
             books.links[row.account] += 0.5 * h * (row.pulled + force) * drives.moving[i, 0]
             books.links[row.account + 1] += 0.5 * h * (row.dragged + dragged) * rate
             row.pulled, row.dragged = force, dragged
-            drive(row, system.bodies, force, way)
+            drive(row, system.bodies, force, direction)
 
     @inlined
     def hold(self, system: System, books: Books, energy: Row) -> None:
@@ -122,13 +122,13 @@ class Actuators(Kind, Histories):
 
 
 @inlined
-def drive(row: Row, bodies: Rows, force: float, way: Vector) -> None:
+def drive(row: Row, bodies: Rows, force: float, direction: Vector) -> None:
     """Let an actuator push its point along a way, or all bodies in proportion to their masses [N]."""
     if row.body >= 0:
         body, at = bodies[row.body], read(row.at)
-        add_force(body, plus(at, rotation_change(body, at)), scaled(force, way))
+        add_force(body, plus(at, rotation_change(body, at)), scaled(force, direction))
         return
-    acceleration = scaled(force / mass_of(bodies), way)
+    acceleration = scaled(force / mass_of(bodies), direction)
     for b in range(len(bodies)):
         increase(bodies[b].force, scaled(bodies[b].mass, acceleration))
 
@@ -143,15 +143,15 @@ def mass_of(bodies: Rows) -> float:
 
 
 @inlined
-def driven_place(row: Row, bodies: Rows, way: Vector) -> tuple[float, float]:
+def driven_place(row: Row, bodies: Rows, direction: Vector) -> tuple[float, float]:
     """Displacement along a way [m] and velocity [m/s] of what an actuator drives: its point, or the centroid of all."""
     if row.body >= 0:
         body, at = bodies[row.body], read(row.at)
         change = rotation_change(body, at)
         speed = plus(read(body.velocity), spun(read(body.spin), plus(at, change)))
-        return dot(way, plus(read(body.place), change)), dot(way, speed)
+        return dot(direction, plus(read(body.place), change)), dot(direction, speed)
     moved, speeds, mass = 0.0, 0.0, mass_of(bodies)
     for b in range(len(bodies)):
-        moved += bodies[b].mass * dot(way, read(bodies[b].place))
-        speeds += bodies[b].mass * dot(way, read(bodies[b].velocity))
+        moved += bodies[b].mass * dot(direction, read(bodies[b].place))
+        speeds += bodies[b].mass * dot(direction, read(bodies[b].velocity))
     return moved / mass, speeds / mass

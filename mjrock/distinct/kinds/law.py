@@ -126,7 +126,7 @@ class JointLaw:
         """
         return self.rows[:0]
 
-    def with_found(self, count: int, kept: Flags, added: Rows) -> Self:
+    def with_search_lines(self, count: int, kept: Flags, added: Rows) -> Self:
         """The law with these rows after those that are kept of the lines that are found, which follow those of joints.
 
         A law that ends with its joints has none."""

@@ -120,8 +120,8 @@ class Kind:
         """Rates at which the links lengthen, for unit velocities at rest, shape (links, unknowns)."""
         table = self.rows
         between, arms = np.asarray(table["between"]), (np.asarray(table["at"]), np.asarray(table["origin"]))
-        ways = between / np.linalg.norm(between, axis=1)[:, None]
-        return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, ways, len(bodies))
+        directions = between / np.linalg.norm(between, axis=1)[:, None]
+        return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, directions, len(bodies))
 
     def look_ahead(self, lead: float) -> None:
         """Let dashpots look ahead by some steps, see `step_length.LEAD`."""
@@ -145,7 +145,7 @@ class Pull(NamedTuple):
     """A link at a pose: its length [m], its direction away from the anchor, and the arms to its two ends [m]."""
 
     length: float
-    way: Vector
+    direction: Vector
     arm: Vector
     anchor_arm: Vector
 
@@ -156,25 +156,25 @@ def pull(link: Row, system: System) -> Pull:
     bodies = system.bodies
     body, at = bodies[link.body], read(link.at)
     change = rotation_change(body, at)
-    arm, across = plus(at, change), plus(read(link.between), plus(read(body.place), change))
+    arm, span = plus(at, change), plus(read(link.between), plus(read(body.place), change))
     anchor_arm = read(link.origin)
     if link.anchor >= 0:
         anchor = bodies[link.anchor]
         change = rotation_change(anchor, anchor_arm)
-        across = minus(across, plus(read(anchor.place), change))
+        span = minus(span, plus(read(anchor.place), change))
         anchor_arm = plus(anchor_arm, change)
     elif link.support >= 0:
-        across = minus(across, vector(system.supports.moved, link.support, at))
-    length = math.sqrt(dot(across, across))
-    return Pull(length, scaled(1 / length, across), arm, anchor_arm)
+        span = minus(span, vector(system.supports.moved, link.support, at))
+    length = math.sqrt(dot(span, span))
+    return Pull(length, scaled(1 / length, span), arm, anchor_arm)
 
 
 @inlined
 def push_apart(link: Row, system: System, now: Pull, force: float) -> None:
     """Add a force along a link on the bodies at both ends [N], positive where it pushes them apart."""
-    add_force(system.bodies[link.body], now.arm, scaled(force, now.way))
+    add_force(system.bodies[link.body], now.arm, scaled(force, now.direction))
     if link.anchor >= 0:
-        add_force(system.bodies[link.anchor], now.anchor_arm, scaled(-force, now.way))
+        add_force(system.bodies[link.anchor], now.anchor_arm, scaled(-force, now.direction))
 
 
 @inlined
@@ -186,8 +186,8 @@ def lengthening(link: Row, system: System, now: Pull) -> float:
         anchor = system.bodies[link.anchor]
         velocity = minus(velocity, plus(read(anchor.velocity), spun(read(anchor.spin), now.anchor_arm)))
     elif link.support >= 0:
-        velocity = minus(velocity, vector(system.supports.moving, link.support, now.way))
-    return dot(now.way, velocity)
+        velocity = minus(velocity, vector(system.supports.moving, link.support, now.direction))
+    return dot(now.direction, velocity)
 
 
 @inlined
@@ -202,4 +202,4 @@ def book_support(link: Row, system: System, books: Books, now: Pull, force: floa
 @inlined
 def carried_along(link: Row, system: System, now: Pull) -> float:
     """Velocity along a link of the support that it is anchored on, zero for none [m/s]."""
-    return dot(now.way, vector(system.supports.moving, link.support, now.way)) if link.support >= 0 else 0.0
+    return dot(now.direction, vector(system.supports.moving, link.support, now.direction)) if link.support >= 0 else 0.0

@@ -67,11 +67,11 @@ def act_all(tables: Tables, system: System, books: Books, t: float, h: float) ->
 def settle_all(links: Tables, system: System, books: Books, kick: float) -> tuple[float, float]:
     """Let the links of all kinds do what is left, see `Kind.settle`."""
     if len(links) > 0:
-        (taken, put_in), (others, others_in) = (
+        (dissipated, put_in), (others, others_in) = (
             settle(links[0], system, books, kick),
             settle_all(links[1:], system, books, kick),
         )
-        return taken + others, put_in + others_in
+        return dissipated + others, put_in + others_in
     return 0.0, 0.0
 
 
@@ -89,8 +89,8 @@ def hold_all(links: Tables, system: System, books: Books, energy: Row, pulled: A
 def stored_by_laws(laws: Tables) -> tuple[float, float]:
     """Energy that all laws hold along the normals and along the faces [J]."""
     if len(laws) > 0:
-        (along, across), (others, others_across) = stored(laws[0]), stored_by_laws(laws[1:])
-        return along + others, across + others_across
+        (along, tangential), (others, others_tangential) = stored(laws[0]), stored_by_laws(laws[1:])
+        return along + others, tangential + others_tangential
     return 0.0, 0.0
 
 
@@ -119,8 +119,8 @@ def with_laws(laws: Tables, p: int, push: float, drag: Vector, holds: bool) -> t
 
 
 @inlined
-def is_held(laws: Tables, p: int) -> bool:
+def is_bonded(laws: Tables, p: int) -> bool:
     """Whether a law holds more of line p than friction."""
     if len(laws) > 0:
-        return (p < len(laws[0].rows) and holds(laws[0], laws[0].rows[p])) or is_held(laws[1:], p)
+        return (p < len(laws[0].rows) and holds(laws[0], laws[0].rows[p])) or is_bonded(laws[1:], p)
     return False

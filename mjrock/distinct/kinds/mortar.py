@@ -1,10 +1,9 @@
-"""Bonds of mortared joints: the part of a line that acts in tension and compression, and its shear spring with
-cohesion.
+"""Bonds of mortared joints: a spring that acts in tension and compression, and a shear spring with cohesion.
 
-While a bond holds, its line is split in two. The secant of the bond acts both ways, here. The rest of the stiffness of
-the line pushes only, in `contact`, as a dry line does. An intact bond has the whole stiffness of its line, and once the
-bond is lost the line is a dry one. Friction of a bonded line is that of the bond, and its faces have no ends as long as
-it holds.
+While a bond holds, the stiffness of its line is divided. The secant stiffness of the bond pulls and pushes, here. The
+rest pushes only, in `contact`, as a dry line does. An intact bond has the whole stiffness, and once the bond is lost
+the line is a dry one. The friction of a bonded line is that of its bond. A line cannot move past an end of its face as
+long as the bond holds.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from ...problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
 from ...problem.masonry.laws.joint_law import normal_force
 from ...quantities import Array, Flags
 from ...scene.scene import Scene
-from ..contacts.contact import meeting, relative, where_friction_rubs
+from ..contacts.contact import meeting, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sheared, shortened, stretched
 from ..rotation import in_body
 from ..rows import Fields, Row, Rows, numbers
@@ -46,15 +45,15 @@ class Bonds(JointLaw, Table):
         *numbers("integrity"),
         *numbers("peak", "hardening"),  # strength in crushing at its peak [N], plastic closing there, zero for none [m]
         *numbers("largest_gap", "crack", "crushed"),  # so far, opening of the crack and plastic closing so far [m]
-        *numbers("secant"),  # stiffness that holds both ways [N/m]
-        *numbers("undamped"),  # 1 where dashpots leave out what holds, or 0 [-]
+        *numbers("secant"),  # stiffness that pulls and pushes [N/m]
+        *numbers("undamped"),  # 1 where the dashpots leave out the secant, or 0 [-]
         *numbers("age"),  # time that it has held until it cracked [s]
     ]
     bond: ClassVar[type[Bond]] = Bond
     endless: ClassVar[tuple[str, ...]] = (*JointLaw.endless, "strength")
 
     def begin(self, lines: Rows, which: Flags, bond: Bond, area: Array) -> None:
-        """With the strengths of the mortar times the area of each line."""
+        """Strengths are those of the mortar times the area of each line."""
         bonds, friction = self.rows, lines["friction"][which]
         residual = friction if bond.residual_friction is None else np.full(len(area), bond.residual_friction)
         columns = {
@@ -80,11 +79,11 @@ class Bonds(JointLaw, Table):
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
-        """Those that have gone leave their lines to themselves."""
+        """Lines whose bonds are lost become dry."""
         for p in range(len(self.rows)):
             line, bond = system.lines[p], self.rows[p]
             if bond.k > 0 and bond.integrity <= INTEGRITY_OF_LOST:
-                let_go(books, line, bond)
+                make_dry(books, line, bond)
             if bond.k > 0:
                 hold_line(system, books, line, bond, h)
 
@@ -134,8 +133,8 @@ class Bonds(JointLaw, Table):
 
 
 @inlined
-def let_go(books: Books, line: Row, bond: Row) -> None:
-    """Make the line dry whose bond is lost, but for crushing where it has a crushing strength."""
+def make_dry(books: Books, line: Row, bond: Row) -> None:
+    """Make a line dry, whose bond is lost. A bond with a crushing strength still crushes."""
     if bond.tension > 0:
         books.totals[0].tension += 0.5 * bond.secant * max(bond.gap, 0.0) ** 2
         bond.tension = bond.cohesion = bond.secant = bond.slip_rate = 0.0
@@ -151,7 +150,7 @@ def let_go(books: Books, line: Row, bond: Row) -> None:
 
 @inlined
 def crush_line(books: Books, line: Row, bond: Row, gap: float) -> float:
-    """Crush a line at a gap [m]: its face steps back. Returns by how much [m]."""
+    """Crush a line at a gap [m]: its face moves back. Returns the distance [m]."""
     grip = read(bond.grip)
     closing = crush(bond, gap, bond.k_s * math.sqrt(dot(grip, grip)))
     if closing > 0:
@@ -166,8 +165,8 @@ def crush_line(books: Books, line: Row, bond: Row, gap: float) -> float:
 def slide(
     bodies: Rows, line: Row, bond: Row, normal: Vector, slip: Vector, push: float, h: float
 ) -> tuple[Vector, float]:
-    """Force of spring and dashpot of a bond along the face [N], see `sprung_friction`, and what all its cohesion takes
-    [J]. Where crushing limits the force there is not as much."""
+    """Force of spring and dashpot of a bond along the face [N], see `sprung_friction`, and the energy that its cohesion
+    dissipates [J]. That is too much where crushing limits the force: the caller limits it."""
     bond.friction = bond.residual + bond.friction_drop * bond.integrity
     limit = bonded_limit(bond, push)
     trial = stretched(bodies, line.face, bond.grip, normal, scaled(h, slip))
@@ -175,11 +174,11 @@ def slide(
     c_s = bond.c_s * (1 - bond.undamped * bond.secant / bond.k)
     drag = shortened(minus(scaled(-bond.k_s, grip), scaled(c_s, slip)), limit)
     slid = minus(trial, grip)
-    taken = wear(bond, math.sqrt(dot(slid, slid)))
+    dissipated = wear(bond, math.sqrt(dot(slid, slid)))
     if line.face >= 0:
         grip = in_body(bodies[line.face], grip)
     put(bond.grip, grip)
-    return drag, taken
+    return drag, dissipated
 
 
 @inlined
@@ -198,19 +197,19 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
             line.c = bond.c * line.k / bond.k
             if before > 0 or gap > 0:
                 books.totals[0].tension += 0.5 * before * gap * (secant - bond.secant)
-    velocity = relative(bodies, line, supports, meet)
+    velocity = relative_velocity(bodies, line, supports, meet)
     rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
     pressed = -(1 - bond.undamped) * bond.c * bond.secant / bond.k * rate
     push = pressed - bond.secant * gap
     books.dashpots[line.group] -= 0.5 * h * (bond.pressed + pressed) * rate
     last = read(bond.dragged)
-    held = sheared(bond)
-    drag, taken = slide(bodies, line, bond, meet.normal, slip, push + normal_force(line, gap, rate), h)
+    stored_before = sheared(bond)
+    drag, dissipated = slide(bodies, line, bond, meet.normal, slip, push + normal_force(line, gap, rate), h)
     mean = scaled(0.5 * h, plus(last, drag))
     done = -dot(mean, slip)
-    taken = min(taken, max(done + held - sheared(bond), 0.0))  # no more than there is
-    books.totals[0].slip += taken
-    books.totals[0].friction += done - taken
+    dissipated = min(dissipated, max(done + stored_before - sheared(bond), 0.0))  # no more than there is
+    books.totals[0].slip += dissipated
+    books.totals[0].friction += done - dissipated
     if line.support >= 0:
         work = plus(scaled(0.5 * h * (bond.push + push), meet.normal), as_vector(meet.normal, mean))
         books.totals[0].ground += carried(line, supports, work)

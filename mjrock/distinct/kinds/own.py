@@ -1,11 +1,11 @@
 """Own laws of joints, see `own_law`: a class of a user's file gives the stress of each line.
 
-A law that only presses gives its line the spring that it has at the pose: `k` is the secant stiffness there, and `bent`
-what the spring that holds the same energy has more. Friction, dashpots, touches and the ends of faces then follow as
-those of a dry line do. A law that pulls holds its line both ways here, with friction by its own push, until it has lost
-all of its hold; its line then presses as others do.
+A law that only presses sets the spring of its line at each pose: `k` is the secant stiffness, and `bent` the stiffness
+that a spring of the same energy has beyond it. Friction, dashpots, touches and the ends of faces are then those of a
+dry line. A law that also pulls acts here, with friction by its own push, until it has lost all of its tension; from
+then on its line only presses.
 
-The loops call a law by the address of its compiled text, so that they are compiled and stored once for all laws.
+The loops call a law by the address of its compiled function, so that they are compiled and stored once for all laws.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from ...problem.wall.user_law import (
 )
 from ...quantities import GRAVITY, Array, Flags, Integers
 from ...scene.scene import Scene
-from ..contacts.contact import meeting, relative, where_friction_rubs
+from ..contacts.contact import meeting, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sprung_friction
 from ..rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
 from ..system import Books, System
@@ -46,11 +46,11 @@ from .link import Table
 DEEPER = 2.0
 """Closing for which steps are stable, over the largest at rest [-]."""
 GONE = math.exp(-9)
-"""Share of its hold that a law has left when it pulls no more [-]."""
+"""Share of its tension that is left of a law which counts as one that pulls no more [-]."""
 NO_RATE = 1e-12
 """Rate below which a dashpot has no force [m/s]."""
 NO_CLOSING = 1e-20
-"""Closing below which a line keeps the spring that it has [m]."""
+"""Closing below which the spring of a line is not changed [m]."""
 SIGNATURE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_double, ctypes.c_double)
 AS_PYTHON = "laws"
 """Value of MJROCK_INTERPRET with which own laws run as plain Python in compiled loops."""
@@ -73,8 +73,7 @@ answer = by_type(_choice)
 
 @cache
 def function_of(kind: Any) -> Any:
-    """What lets a law answer that is given a row by its address, as a function of C. Plain Python where nothing is
-    compiled."""
+    """A function of C that evaluates a law for a row at an address; plain Python where nothing is compiled."""
     if compiles() and os.environ.get("MJROCK_INTERPRET") != AS_PYTHON:
         from .own_calls import compiled_text
 
@@ -92,7 +91,7 @@ def function_of(kind: Any) -> Any:
 
 
 def address_of(kind: Any) -> int:
-    """The address of the text of a law in this process."""
+    """The address of the function of a law in this process."""
     text = function_of(kind)
     return int(getattr(text, "address", 0) or ctypes.cast(text, ctypes.c_void_p).value or 0)
 
@@ -112,7 +111,7 @@ class OwnLaws(JointLaw, Table):
 
     @classmethod
     def from_scene(cls, scene: Scene, lines: Rows) -> Self:
-        """Their lines begin with the largest stiffness that they may have."""
+        """Lines begin with the largest stiffness of their law."""
         law = super().from_scene(scene, lines)
         weight, joint = GRAVITY * float(scene.bodies.mass.sum()), scene.contacts.joint
         for i, own in enumerate(scene.contacts.bonds):
@@ -159,7 +158,7 @@ class OwnLaws(JointLaw, Table):
 
     @inlined
     def stored(self) -> tuple[float, float]:
-        """Of those that pull; what others store is in their lines."""
+        """Of laws that pull. The energy of the others is in their lines."""
         energy = 0.0
         for p in range(len(self.rows)):
             own = self.rows[p]
@@ -179,18 +178,18 @@ class OwnLaws(JointLaw, Table):
         return bool(row.k > 0 and row.pulls > 0)
 
     def springs(self) -> dict[str, Array]:
-        """The largest ones up to a multiple of the closing at rest."""
+        """The largest up to a multiple of the closing at rest."""
         dry = super().springs()
         return dry | {"k": np.asarray(self.rows["stiffest"]), "c": np.asarray(self.rows["strongest"])}
 
     def release(self, lines: Rows, which: Flags) -> None:
-        """A line that presses has all there is of it."""
+        """A line that only presses keeps the spring of its law."""
         for name in ("k", "push", "dragged"):
             self.rows[name][: len(which)][which] = 0.0
 
     def beyond(self, joint: Integers, found: Rows) -> Rows:
-        """A place has its part of the law in proportion to its spring. It presses only. A law with a memory ends with
-        its joint: a new place would have to harden again."""
+        """The law of a place is scaled by its spring, and presses only. A law with a memory ends with its joint: a new
+        place would have to harden again."""
         added = rows(self.rows.dtype, len(joint) if len(self.rows) else 0)
         lasting = (self.rows["address"] != 0) & (self.rows["remembers"] == 0)
         for i in np.unique(self.rows["joint"][lasting]).tolist():
@@ -207,7 +206,7 @@ class OwnLaws(JointLaw, Table):
             added[which] = law
         return added
 
-    def with_found(self, count: int, kept: Flags, added: Rows) -> Self:
+    def with_search_lines(self, count: int, kept: Flags, added: Rows) -> Self:
         """All lines have a row."""
         if not len(self.rows):
             return self
@@ -215,7 +214,7 @@ class OwnLaws(JointLaw, Table):
 
     @staticmethod
     def stiffest(laws: Rows, springs: dict[str, Array]) -> dict[str, Array]:
-        """Those of the law where a place has one."""
+        """Springs and dashpots of the law where a place has one."""
         if not len(laws):
             return springs
         k, c = (
@@ -225,7 +224,7 @@ class OwnLaws(JointLaw, Table):
 
     @staticmethod
     def soften(laws: Rows, share: Array) -> None:
-        """All of the law is less."""
+        """The whole law is scaled."""
         for name in ("k", "c", "area", "stiffest", "strongest") if len(laws) else ():
             laws[name] *= share
 
@@ -258,7 +257,7 @@ class OwnLaws(JointLaw, Table):
 
 @inlined
 def press_only(books: Books, line: Row, own: Row) -> None:
-    """Make a line press only whose law has lost its hold."""
+    """Make a line, whose law has lost its tension, press only."""
     if own.gap > 0:
         books.totals[0].tension += own.area * own.values[OF_ENERGY]
     line.margin, own.pulls, own.push, own.pressed = own.margin, 0.0, 0.0, 0.0
@@ -267,18 +266,18 @@ def press_only(books: Books, line: Row, own: Row) -> None:
 
 
 @inlined
-def take_answer(own: Row, books: Books, closing: float, rate: float, h: float) -> None:
-    """Let a law answer at a closing [m] that grows at a rate [m/s], and book what its memory has taken of the work
+def update_by_law(own: Row, books: Books, closing: float, rate: float, h: float) -> None:
+    """Evaluate a law at a closing [m] that grows at a rate [m/s], and book the energy that its memory has dissipated
     since the last pose, a time h ago [s]."""
     stress, energy = own.values[OF_STRESS], own.values[OF_ENERGY]
     answer(own.values, own.address, closing, rate)
     if own.values[OF_DISSIPATED] != 0 and h > 0:
         work = 0.5 * h * (stress + own.values[OF_STRESS]) * rate
-        taken = own.area * (work - (own.values[OF_ENERGY] - energy))
+        dissipated = own.area * (work - (own.values[OF_ENERGY] - energy))
         if closing > 0:
-            books.totals[0].crushing += taken
+            books.totals[0].crushing += dissipated
         else:
-            books.totals[0].tension += taken
+            books.totals[0].tension += dissipated
 
 
 @inlined
@@ -288,19 +287,19 @@ def press_by_law(system: System, books: Books, line: Row, own: Row, h: float) ->
     if meet.gap >= 0 and (own.remembers == 0 or meet.past):
         own.values[OF_STRESS] = own.values[OF_ENERGY] = 0.0
         return
-    rate = -dot(meet.normal, relative(system.bodies, line, system.supports, meet))
+    rate = -dot(meet.normal, relative_velocity(system.bodies, line, system.supports, meet))
     closing = -meet.gap
-    take_answer(own, books, closing, rate, h)
+    update_by_law(own, books, closing, rate, h)
     if closing > NO_CLOSING:
-        held, force = stored(line, -line.depth), normal_force(line, -line.depth, 0.0)
+        energy, force = stored(line, -line.depth), normal_force(line, -line.depth, 0.0)
         line.k = own.area * own.values[OF_STRESS] / closing
         line.bent = 2 * own.area * own.values[OF_ENERGY] / (closing * closing) - line.k
         if own.damps > 0:
             line.c = own.area * own.values[OF_DAMPING] / rate if abs(rate) > NO_RATE else 0.0
-        if meet.past or line.past == 1:  # `lost_at_the_end` takes the spring of this pose for that of the last one
-            held -= stored(line, -line.depth)
+        if meet.past or line.past == 1:  # `lost_past_face_edge` takes the spring of this pose for that of the last one
+            energy -= stored(line, -line.depth)
             force -= normal_force(line, -line.depth, 0.0)
-            books.totals[0].joint_ends += held + 0.5 * force * h * rate
+            books.totals[0].joint_ends += energy + 0.5 * force * h * rate
 
 
 @inlined
@@ -308,9 +307,9 @@ def hold_by_law(system: System, books: Books, line: Row, own: Row, h: float) -> 
     """Add the forces of a law that pulls, with its friction."""
     bodies, supports = system.bodies, system.supports
     meet = where_friction_rubs(meeting(system, line))
-    velocity = relative(bodies, line, supports, meet)
+    velocity = relative_velocity(bodies, line, supports, meet)
     rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
-    take_answer(own, books, -meet.gap, -rate, h)
+    update_by_law(own, books, -meet.gap, -rate, h)
     pressed = own.area * own.values[OF_DAMPING]
     if own.damps == 0:
         pressed = -own.c * rate

@@ -65,13 +65,13 @@ class OwnLinks(Kind, Table):
             now = pull(link, system)
             rate = lengthening(link, system, now)
             ahead = rate + (link.lead if h > 0 else 0.0) * (rate - link.rate)
-            bears, held = link.values[OF_STRESS], link.values[OF_ENERGY]
+            bears, energy_before = link.values[OF_STRESS], link.values[OF_ENERGY]
             answer(link.values, link.address, now.length - link.reach, ahead)
             dragged = link.values[OF_DAMPING]
             books.links[link.account] += 0.5 * h * (link.dragged + dragged) * rate
             if link.values[OF_DISSIPATED] != 0 and h > 0:
                 work = 0.5 * h * (bears + link.values[OF_STRESS]) * rate
-                books.links[link.account] += work - (link.values[OF_ENERGY] - held)
+                books.links[link.account] += work - (link.values[OF_ENERGY] - energy_before)
             link.rate, link.dragged = rate, dragged
             force = -link.values[OF_STRESS] - dragged
             book_support(link, system, books, now, force, h)

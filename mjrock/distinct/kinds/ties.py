@@ -78,20 +78,20 @@ class Ties(Kind, Table):
     @inlined
     def settle(self, system: System, books: Books, kick: float) -> tuple[float, float]:
         """The second impulse of those that have gone taut or slack, see `touches`."""
-        taken, put_in = 0.0, 0.0
+        dissipated, put_in = 0.0, 0.0
         for i in range(len(self.rows)):
             tie = self.rows[i]
             if tie.due != 0:
                 now = pull(tie, system)
                 impulse = due_impulse(tie, lengthening(tie, system, now))
-                apply_impulse_at(system.bodies[tie.body], now.arm, scaled(impulse, now.way))
+                apply_impulse_at(system.bodies[tie.body], now.arm, scaled(impulse, now.direction))
                 if tie.anchor >= 0:
-                    apply_impulse_at(system.bodies[tie.anchor], now.anchor_arm, scaled(-impulse, now.way))
+                    apply_impulse_at(system.bodies[tie.anchor], now.anchor_arm, scaled(-impulse, now.direction))
                 put_in += 0.5 * impulse * carried_along(tie, system, now)
-                taken -= 0.5 * impulse * tie.rate
+                dissipated -= 0.5 * impulse * tie.rate
                 tie.struck, tie.due = tie.struck + impulse / kick, 0.0
         books.totals[0].ground += put_in
-        return taken, put_in
+        return dissipated, put_in
 
     @inlined
     def hold(self, system: System, books: Books, energy: Row) -> None:
@@ -113,16 +113,16 @@ def meet_or_leave(tie: Row, system: System, books: Books, now: Pull, h: float) -
     if tie.push > 0 or h == 0:
         return
     tie.rate = lengthening(tie, system, now)
-    longer, held = now.length - tie.reach, -tie.pulled
-    if longer > 0 and tie.rate > 0 and (held == 0 or tie.k * longer > tie.strength > held):
-        taut = min(longer / tie.rate, h) if held == 0 else h
+    longer, pull_before = now.length - tie.reach, -tie.pulled
+    if longer > 0 and tie.rate > 0 and (pull_before == 0 or tie.k * longer > tie.strength > pull_before):
+        taut = min(longer / tie.rate, h) if pull_before == 0 else h
         most = min(tie.k * longer, tie.strength)
-        rising = min((most - held) / (tie.k * tie.rate), taut)
-        tie.struck = 0.5 * (held + most) + (0.5 * (most - held) * rising - most * taut) / h
+        rising = min((most - pull_before) / (tie.k * tie.rate), taut)
+        tie.struck = 0.5 * (pull_before + most) + (0.5 * (most - pull_before) * rising - most * taut) / h
         tie.due = -0.5 * tie.k * taut * (h - taut) if most < tie.strength else 0.0
-    elif longer <= 0 and held > 0 and tie.rate < 0:
-        taut = min(held / (tie.k * -tie.rate), h)
-        tie.struck = 0.5 * held * (h - taut) / h
+    elif longer <= 0 and pull_before > 0 and tie.rate < 0:
+        taut = min(pull_before / (tie.k * -tie.rate), h)
+        tie.struck = 0.5 * pull_before * (h - taut) / h
         tie.due = 0.5 * tie.k * taut * (h - taut)
     tie.transit = 0.5 * h * tie.struck * tie.rate
     books.totals[0].ground += 0.5 * h * tie.struck * carried_along(tie, system, now)

@@ -1,15 +1,15 @@
-"""Clipping: the places where a face of one block lies over a face of another.
+"""Clipping: contact places where a face of one block lies over a face of another.
 
-The common area of the two faces is bounded by corners of either and by points where edges cross. Each of these is a
-place of contact: a corner meets the other face, and edges that cross meet along the normal of both. Its share of the
-contact is the angle by which the outline of the area turns there, over a whole turn: a quarter for each corner of a
-rectangle. Places that coincide have together the share of one, and a place on a straight side has none.
+The corners of the common area of two faces are corners of either face, or points where edges of both cross. Each is a
+contact place: a corner is in contact with the other face, and crossing edges are in contact along their common normal.
+The share of a place is the angle by which the outline turns there, over a whole turn: a quarter for each corner of a
+rectangle. Places that coincide share that of one, and a place on a straight edge has none.
 
-A pair that had a joint keeps the `points` of the joint. A common area of four corners is one quadrilateral, divided
-into points - 1 cells a side, in the plane along the joint alone. Any other area is divided into a quadrilateral for
-each corner, between that corner, the middles of its two edges and the centroid, with half as many cells a side. So the
-grid is that of `geometry.convex.spread`. The tributary area of each point is the integral of its bilinear weight: the
-sum of these areas is the common area, and their mean position is its centroid.
+A pair of blocks that had a joint keeps the number of `points` of the joint, in the grid of `geometry.convex.spread`. A
+common area of four corners is one quadrilateral with points - 1 cells a side, in the plane along the joint alone. Any
+other area is divided into one quadrilateral for each corner, between that corner, the middles of its two edges and the
+centroid, with half as many cells a side. The tributary area of each node is the integral of its bilinear weight, so
+that the areas add up to the common area and the mean of the nodes, weighted by them, is its centroid.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ from .solids import Solids, triple
 PLACE = np.dtype(
     [*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area"), *integers("sides")]
 )
-"""A place: block of the face, other block, where, normal out of the face, gap [m], share, area of the part [m2], and
-number of the pair of sides, see `sides_between`."""
+"""A contact place: block of the face, other block, position [m], normal out of the face, gap [m], share, common area
+[m2], and number of the pair of sides, see `sides_between`."""
 
 
 @inlined
 def corner_of(solids: Solids, number: int) -> Vector:
-    """Where a corner of an outline is [m]."""
+    """Position of a corner of an outline [m]."""
     return triple(solids.corners, solids.outline[number])
 
 
 @inlined
 def next_corner(solids: Solids, face: int, number: int) -> Vector:
-    """Where the corner after another one of the outline of a face is [m]."""
+    """Position of the corner that follows another one in the outline of a face [m]."""
     return corner_of(solids, solids.first[face] if number + 1 == solids.first[face + 1] else number + 1)
 
 
@@ -59,8 +59,10 @@ def length_of(a: Vector) -> float:
 
 @inlined
 def longest_edge(solids: Solids, face: int) -> float:
-    """Length of the longest edge of a face [m]. What is small beside a face goes by it: an edge beside a corner is
-    another one where the outline runs the other way round, as in a mirror image."""
+    """Length of the longest edge of a face [m], to which small distances are compared.
+
+    The edge beside a corner would not do: in a mirror image, whose outline runs the other way round, it is another one.
+    """
     longest = 0.0
     for i in range(solids.first[face], solids.first[face + 1]):
         longest = max(longest, length_of(minus(next_corner(solids, face, i), corner_of(solids, i))))
@@ -68,11 +70,11 @@ def longest_edge(solids: Solids, face: int) -> float:
 
 
 @inlined
-def face_towards(solids: Solids, block: int, way: Vector) -> int:
-    """The face of a block whose normal is nearest to a direction, of two that are as near the one that `is_before`."""
+def face_towards(solids: Solids, block: int, direction: Vector) -> int:
+    """The face of a block whose normal is nearest to a direction. Of equally near ones `is_before` chooses."""
     best, largest = -1, -math.inf
     for face in range(solids.face[block], solids.face[block + 1]):
-        cosine = dot(normal_of(solids, face), way)
+        cosine = dot(normal_of(solids, face), direction)
         ahead = cosine - largest
         if ahead > AS_TOWARDS or (ahead >= -AS_TOWARDS and is_before(solids, face, best)):
             best, largest = face, cosine
@@ -81,8 +83,8 @@ def face_towards(solids: Solids, block: int, way: Vector) -> int:
 
 @inlined
 def is_before(solids: Solids, face: int, other: int) -> bool:
-    """Whether a face of a block is taken and not another one of it that would do as well: it is larger, or as large and
-    looks further up. So neither the numbers of faces nor the axes decide, where faces differ in this."""
+    """Whether a face of a block comes before another one of it that would do as well: it is larger, or as large and
+    faces further upwards. The choice depends on neither the numbers of faces nor the axes, where faces differ so."""
     longer = solids.extent[face] - solids.extent[other]
     if abs(longer) > AS_LARGE * solids.extent[other]:
         return bool(longer > 0)
@@ -91,48 +93,48 @@ def is_before(solids: Solids, face: int, other: int) -> bool:
 
 @inlined
 def sides_between(solids: Solids, faces: tuple[int, int]) -> int:
-    """One number for the sides that two faces lie on."""
+    """A number of the pair of sides on which two faces lie."""
     one, other = solids.side[faces[0]], solids.side[faces[1]]
     number: int = min(one, other) * len(solids.side) + max(one, other)
     return number
 
 
 @inlined
-def cut(polygon: Array, count: int, way: Vector, reach: float, slack: float, room: Array) -> int:
-    """Cut off the part of a polygon beyond a limit along a direction. Returns how many corners are left.
+def cut(polygon: Array, count: int, direction: Vector, reach: float, slack: float, room: Array) -> int:
+    """Cut off the part of a polygon beyond a limit along a direction. Returns the number of its corners.
 
-    A convex polygon gains at most one corner. One that is no longer convex by rounding gains no more than there is room
-    for."""
-    left = 0
+    A convex polygon gains at most one corner. A polygon that rounding has made concave may gain more, up to the size of
+    the room."""
+    kept = 0
     for i in range(count):
-        a, b = vector(polygon, i, way), vector(polygon, (i + 1) % count, way)
-        beyond, next_beyond = dot(way, a) - reach, dot(way, b) - reach
-        if beyond <= slack and left < len(room):
-            put(room[left], a)
-            left += 1
-        if (beyond <= slack) != (next_beyond <= slack) and left < len(room):
+        a, b = vector(polygon, i, direction), vector(polygon, (i + 1) % count, direction)
+        beyond, next_beyond = dot(direction, a) - reach, dot(direction, b) - reach
+        if beyond <= slack and kept < len(room):
+            put(room[kept], a)
+            kept += 1
+        if (beyond <= slack) != (next_beyond <= slack) and kept < len(room):
             share = min(max(beyond / (beyond - next_beyond), 0.0), 1.0)
-            put(room[left], plus(a, scaled(share, minus(b, a))))
-            left += 1
-    for i in range(left):
-        put(polygon[i], vector(room, i, way))
-    return left
+            put(room[kept], plus(a, scaled(share, minus(b, a))))
+            kept += 1
+    for i in range(kept):
+        put(polygon[i], vector(room, i, direction))
+    return kept
 
 
 @inlined
-def parted(polygon: Array, count: int, slack: float) -> int:
-    """Remove corners of a polygon that are within a distance of those before them. Returns how many are left."""
-    left = 0
+def without_duplicates(polygon: Array, count: int, slack: float) -> int:
+    """Remove corners of a polygon within a distance of the corner before. Returns the number of its corners."""
+    kept = 0
     for i in range(count):
-        at, last = triple(polygon, i), triple(polygon, left - 1 if left else count - 1)
+        at, last = triple(polygon, i), triple(polygon, kept - 1 if kept else count - 1)
         if length_of(minus(at, last)) > slack:
-            put(polygon[left], at)
-            left += 1
-    return left
+            put(polygon[kept], at)
+            kept += 1
+    return kept
 
 
 @inlined
-def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
+def common_area(solids: Solids, face: int, over: int, room: Array) -> int:
     """Write the common area of two faces into the first half of the room, without corners that coincide.
 
     Returns:
@@ -145,15 +147,15 @@ def lying_over(solids: Solids, face: int, over: int, room: Array) -> int:
     normal, slack = normal_of(solids, face), ON_EDGE * longest_edge(solids, face)
     for i in range(solids.first[face], solids.first[face + 1]):
         a = corner_of(solids, i)
-        way = spun(minus(next_corner(solids, face, i), a), normal)
-        way = scaled(1 / length_of(way), way)
-        count = cut(polygon, count, way, dot(way, a), slack, further)
-    return parted(polygon, count, slack)
+        outwards = spun(minus(next_corner(solids, face, i), a), normal)
+        outwards = scaled(1 / length_of(outwards), outwards)
+        count = cut(polygon, count, outwards, dot(outwards, a), slack, further)
+    return without_duplicates(polygon, count, slack)
 
 
 @inlined
-def turn_at(polygon: Array, count: int, i: int) -> float:
-    """The angle by which the outline of a polygon turns at a corner, over a whole turn."""
+def turn_share(polygon: Array, count: int, i: int) -> float:
+    """Angle by which the outline of a polygon turns at a corner, over a whole turn [-]."""
     at = triple(polygon, i)
     before = minus(at, triple(polygon, i - 1 if i else count - 1))
     after = minus(triple(polygon, (i + 1) % count), at)
@@ -178,14 +180,14 @@ def distance_from(at: Vector, a: Vector, along: Vector) -> float:
 
 @inlined
 def write_place(place: Row, blocks: tuple[int, int], at: Vector, normal: Vector, gap: float) -> None:
-    """Write a place of a face, the first block, and of a point on the other one."""
+    """Write the place of a face of the first block and a point of the other block."""
     place.face, place.other, place.gap, place.sides = blocks[0], blocks[1], gap, -1
     put(place.at, minus(at, scaled(0.5 * gap, normal)))
     put(place.normal, normal)
 
 
 @inlined
-def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, place: Row) -> None:
+def write_corner(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Vector, place: Row) -> None:
     """Write the place at a corner of the common area of two faces: a corner of either, or edges that cross.
 
     Args:
@@ -225,16 +227,16 @@ def meet(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int], at: Ve
         minus(next_corner(solids, face, crossed), below),
         minus(next_corner(solids, over, edge), corner_of(solids, edge)),
     )
-    across = spun(along, own)
-    size = length_of(across)
-    if abs(dot(across, normal)) > EDGES_ALONG_FACE * size and size > PARALLEL_EDGES * length_of(along) * length_of(own):
-        normal = scaled(math.copysign(1 / size, dot(across, normal)), across)
+    common = spun(along, own)
+    size = length_of(common)
+    if abs(dot(common, normal)) > EDGES_ALONG_FACE * size and size > PARALLEL_EDGES * length_of(along) * length_of(own):
+        normal = scaled(math.copysign(1 / size, dot(common, normal)), common)
     write_place(place, blocks, at, normal, dot(normal, minus(at, below)))
 
 
 @inlined
 def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count: int, room: Array) -> int:
-    """Write the places where a block lies over a face of another. Returns how many places there are then.
+    """Write the places where a block lies over a face of another. Returns the number of places in the table.
 
     Args:
         solids: the blocks where they are.
@@ -244,15 +246,15 @@ def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count:
         room: for the corners of two faces, twice.
     """
     faces = face, face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
-    corners = lying_over(solids, faces[0], faces[1], room)
+    corners = common_area(solids, faces[0], faces[1], room)
     if corners < 3:
         return count
     area = area_of(room, corners)
     for i in range(corners):
-        share = turn_at(room, corners, i)
+        share = turn_share(room, corners, i)
         if share > ONE_PLACE:
             if count < len(table):
-                meet(solids, faces, blocks, triple(room, i), table[count])
+                write_corner(solids, faces, blocks, triple(room, i), table[count])
                 table[count].share, table[count].area = share, area
                 table[count].sides = sides_between(solids, faces)
             count += 1
@@ -264,25 +266,25 @@ Quad = tuple[Vector, Vector, Vector, Vector]
 
 
 class Grid(NamedTuple):
-    """How a common area is divided: numbers of corners and of quadrilaterals, each of along x across cells."""
+    """How a common area is divided: numbers of its corners, of quadrilaterals, and of cells of each along s and t."""
 
     corners: int
     quads: int
-    along: int
-    across: int
+    cells_s: int
+    cells_t: int
 
 
 @inlined
 def straightened(polygon: Array, count: int, room: Array) -> int:
-    """Remove corners of a polygon on straight edges. Returns how many are left."""
-    left = 0
+    """Remove corners of a polygon on straight edges. Returns the number of its corners."""
+    kept = 0
     for i in range(count):
-        if turn_at(polygon, count, i) > ONE_PLACE:
-            put(room[left], triple(polygon, i))
-            left += 1
-    for i in range(left):
+        if turn_share(polygon, count, i) > ONE_PLACE:
+            put(room[kept], triple(polygon, i))
+            kept += 1
+    for i in range(kept):
         put(polygon[i], triple(room, i))
-    return left
+    return kept
 
 
 @inlined
@@ -290,27 +292,27 @@ def grid_of(polygon: Array, corners: int, cells: tuple[int, int]) -> Grid:
     """The grid of a common area with a given number of cells a side: along x and z, and along y."""
     if corners != 4:
         return Grid(corners, corners, (cells[0] + 1) // 2, (cells[0] + 1) // 2)
-    way = minus(triple(polygon, 1), triple(polygon, 0))
-    if abs(way[1]) > 0.5 * length_of(way):
+    edge = minus(triple(polygon, 1), triple(polygon, 0))
+    if abs(edge[1]) > 0.5 * length_of(edge):
         return Grid(corners, 1, cells[1], cells[0])
     return Grid(corners, 1, cells[0], cells[1])
 
 
 @inlined
-def nodes_of(grid: Grid) -> int:
-    """How many nodes a grid has."""
+def node_count(grid: Grid) -> int:
+    """Number of nodes of a grid."""
     if grid.quads == 1:
-        return (grid.along + 1) * (grid.across + 1)
-    return grid.quads * grid.along * (grid.along + 1) + 1
+        return (grid.cells_s + 1) * (grid.cells_t + 1)
+    return grid.quads * grid.cells_s * (grid.cells_s + 1) + 1
 
 
 @inlined
-def number_of(grid: Grid, quad: int, i: int, j: int) -> int:
-    """Number of node i, j of a quadrilateral. The last row of one is the last column of the next, and the middle is
-    common to all."""
+def node_number(grid: Grid, quad: int, i: int, j: int) -> int:
+    """Number of node i, j of a quadrilateral in its grid. The last row of one is the last column of the next one, and
+    the centroid is a node of all."""
     if grid.quads == 1:
-        return i * (grid.across + 1) + j
-    side, each = grid.along, grid.along * (grid.along + 1)
+        return i * (grid.cells_t + 1) + j
+    side, each = grid.cells_s, grid.cells_s * (grid.cells_s + 1)
     if j < side:
         return quad * each + i * side + j
     if i < side:
@@ -332,7 +334,7 @@ def middle_of(polygon: Array, count: int) -> Vector:
 
 @inlined
 def quad_of(polygon: Array, grid: Grid, quad: int, middle: Vector) -> Quad:
-    """One of the quadrilaterals of a part."""
+    """One of the quadrilaterals of a common area."""
     here = triple(polygon, quad)
     after = triple(polygon, (quad + 1) % grid.corners)
     before = triple(polygon, (quad + grid.corners - 1) % grid.corners)
@@ -342,57 +344,57 @@ def quad_of(polygon: Array, grid: Grid, quad: int, middle: Vector) -> Quad:
 
 
 @inlined
-def of_corners(s: float, t: float) -> tuple[float, float, float, float]:
+def bilinear_weights(s: float, t: float) -> tuple[float, float, float, float]:
     """Bilinear weights of the corners of a quadrilateral."""
     return (1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t
 
 
 @inlined
-def place_in(quad: Quad, s: float, t: float) -> Vector:
-    """A place in a quadrilateral [m]."""
-    a, b, c, d = of_corners(s, t)
+def point_in(quad: Quad, s: float, t: float) -> Vector:
+    """Position of s, t in a quadrilateral [m]."""
+    a, b, c, d = bilinear_weights(s, t)
     return plus(plus(scaled(a, quad[0]), scaled(b, quad[1])), plus(scaled(c, quad[2]), scaled(d, quad[3])))
 
 
 @inlined
 def density_at(quad: Quad, s: float, t: float) -> float:
-    """Area per unit of s and t there [m2], the determinant of the map, which is bilinear."""
-    a, b, c, d = of_corners(s, t)
+    """Jacobian of the bilinear map from s, t [m2]."""
+    a, b, c, d = bilinear_weights(s, t)
     ab, bc, cd, da = minus(quad[1], quad[0]), minus(quad[2], quad[1]), minus(quad[3], quad[2]), minus(quad[0], quad[3])
     low = a * length_of(spun(da, ab)) + b * length_of(spun(ab, bc))
     return low + c * length_of(spun(bc, cd)) + d * length_of(spun(cd, da))
 
 
 @inlined
-def stands_for(quad: Quad, grid: Grid, i: int, j: int) -> float:
-    """Tributary area of node i, j of a quadrilateral [m2]: the integral of its weight over the cells beside it."""
-    across, along, area = 1 / grid.across, 1 / grid.along, 0.0
-    at_node = density_at(quad, i * along, j * across)
+def tributary_area(quad: Quad, grid: Grid, i: int, j: int) -> float:
+    """Tributary area of node i, j of a quadrilateral [m2]: the integral of its weight over the cells around it."""
+    step_t, step_s, area = 1 / grid.cells_t, 1 / grid.cells_s, 0.0
+    at_node = density_at(quad, i * step_s, j * step_t)
     for x in range(2):
         for y in range(2):
-            if 0 <= i - x < grid.along and 0 <= j - y < grid.across:
-                middle = density_at(quad, (i - x + 0.5) * along, (j - y + 0.5) * across)
-                area += (at_node + 2 * middle) / 12 * along * across
+            if 0 <= i - x < grid.cells_s and 0 <= j - y < grid.cells_t:
+                middle = density_at(quad, (i - x + 0.5) * step_s, (j - y + 0.5) * step_t)
+                area += (at_node + 2 * middle) / 12 * step_s * step_t
     return area
 
 
 @inlined
 def is_corner(grid: Grid, i: int, j: int) -> bool:
-    """Whether node i, j of a quadrilateral is a corner of the part."""
+    """Whether node i, j of a quadrilateral is a corner of the common area."""
     if grid.quads == 1:
-        return (i == 0 or i == grid.along) and (j == 0 or j == grid.across)
+        return (i == 0 or i == grid.cells_s) and (j == 0 or j == grid.cells_t)
     return i == 0 and j == 0
 
 
 @inlined
 def is_on_edge(grid: Grid, i: int, j: int) -> bool:
-    """Whether node i, j of a quadrilateral is on an edge of the part."""
-    return i == 0 or j == 0 or (grid.quads == 1 and (i == grid.along or j == grid.across))
+    """Whether node i, j of a quadrilateral is on an edge of the common area."""
+    return i == 0 or j == 0 or (grid.quads == 1 and (i == grid.cells_s or j == grid.cells_t))
 
 
 @inlined
 def is_at_outline(solids: Solids, face: int, at: Vector) -> bool:
-    """Whether a place of the plane of a face is on its outline."""
+    """Whether a point in the plane of a face is on its outline."""
     nearest = math.inf
     for i in range(solids.first[face], solids.first[face + 1]):
         corner = corner_of(solids, i)
@@ -402,7 +404,7 @@ def is_at_outline(solids: Solids, face: int, at: Vector) -> bool:
 
 
 @inlined
-def press_at(
+def write_inner_point(
     solids: Solids,
     faces: tuple[int, int],
     blocks: tuple[int, int],
@@ -410,8 +412,8 @@ def press_at(
     on_edge: bool,
     place: Row,
 ) -> None:
-    """Write a place of the common area of two faces that is not a corner of it: a point of the upper face, or, on an
-    edge of the lower face alone, a point of that edge on the upper face.
+    """Write a place of the common area of two faces that is not a corner of it: a point of the upper face on the lower
+    face, or on an edge of the lower face alone a point of that edge on the upper face.
     """
     face, over = faces
     normal = normal_of(solids, face)
@@ -425,7 +427,7 @@ def press_at(
 
 
 @inlined
-def lay_out(
+def clip_in_grid(
     solids: Solids,
     face: int,
     blocks: tuple[int, int],
@@ -434,20 +436,20 @@ def lay_out(
     count: int,
     room: Array,
 ) -> int:
-    """Write the places where a block lies over a face of another, in the grid of their joint. Returns how many places
-    there are then.
+    """Write the places where a block lies over a face of another, in the grid of their joint. Returns the number of
+    places in the table.
 
     Args:
         solids, face, blocks, table, count, room: as of `clipping.clip`.
         cells: of the grid, along x and z and along y.
     """
     faces = face, face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
-    corners = lying_over(solids, faces[0], faces[1], room)
+    corners = common_area(solids, faces[0], faces[1], room)
     corners = straightened(room, corners, room[len(room) // 2 :])
     if corners < 3:
         return count
     grid = grid_of(room, corners, cells)
-    nodes = nodes_of(grid)
+    nodes = node_count(grid)
     if count + nodes > len(table):
         return count + nodes
     area, middle = area_of(room, corners), middle_of(room, corners)
@@ -455,13 +457,13 @@ def lay_out(
         table[node].share, table[node].area = 0.0, area
     for q in range(grid.quads):
         quad = quad_of(room, grid, q, middle)
-        for i in range(grid.along + 1):
-            for j in range(grid.across + 1):
-                number, at = count + number_of(grid, q, i, j), place_in(quad, i / grid.along, j / grid.across)
-                table[number].share += stands_for(quad, grid, i, j) / area
+        for i in range(grid.cells_s + 1):
+            for j in range(grid.cells_t + 1):
+                number, at = count + node_number(grid, q, i, j), point_in(quad, i / grid.cells_s, j / grid.cells_t)
+                table[number].share += tributary_area(quad, grid, i, j) / area
                 if is_corner(grid, i, j):
-                    meet(solids, faces, blocks, at, table[number])
+                    write_corner(solids, faces, blocks, at, table[number])
                 else:
-                    press_at(solids, faces, blocks, at, is_on_edge(grid, i, j), table[number])
+                    write_inner_point(solids, faces, blocks, at, is_on_edge(grid, i, j), table[number])
                 table[number].sides = sides_between(solids, faces)
     return count + nodes

@@ -14,7 +14,7 @@ SHORTEST_INTERVAL = 0.1
 SEARCHED_TOGETHER = 0.5
 """Time for which contacts are still valid, over the longest time between two updates, up to which a block that has
 moved is searched with others that are."""
-VALID_WAY = 2e-4
+VALID_DISPLACEMENT = 2e-4
 """Largest displacement of a block, over its size, for which its contacts are not searched again. What is within `NEAR`
 is found."""
 VALID_APPROACH = 0.02
@@ -31,7 +31,7 @@ REACH = 2.0
 
 # When a joint is handed over
 
-LEFT_JOINT = 0.05
+HANDOVER_OPENING = 0.05
 """Opening of a whole joint, or slip of a part of it, over its width, beyond which it is handed over."""
 ROLLED = 0.5
 """Rotation of a joint about its end, over the angle to the nearest side beside it, beyond which it is handed over too.

@@ -29,7 +29,7 @@ from ..rows import chosen, joined, rows, unsound
 from ..supports import surges
 from ..system import Books, System
 from .constants import (
-    LEFT_JOINT,
+    HANDOVER_OPENING,
     NEAR,
     OF_STABLE_STEP,
     ONE_PLANE,
@@ -37,9 +37,9 @@ from .constants import (
     ROLLED,
     TOWARDS_OTHERS,
     VALID_APPROACH,
-    VALID_WAY,
+    VALID_DISPLACEMENT,
 )
-from .finder import Finder, Found
+from .finder import ContactPlaces, Finder
 from .handover import Blocks, Lines, Pairs, hand_over, keep_depths
 from .pair_law import SHARED_COLUMNS, PairLaw, least_among, longest_steps_of, pair_number
 from .softening import Sides, shares_within
@@ -116,7 +116,7 @@ class ContactSearch:
         below, above = np.array([(each.below, each.above) for each in joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
-        np.minimum.at(left, of, LEFT_JOINT * np.array([joint.width for joint in joints]))
+        np.minimum.at(left, of, HANDOVER_OPENING * np.array([joint.width for joint in joints]))
         np.minimum.at(rolled, of, _rolled(scene.rest_geometry))
         self.first_joint = np.unique(of, return_index=True)[1]
         self.jointed, points = _jointed(scene, self.finder, of)
@@ -124,7 +124,7 @@ class ContactSearch:
         self.finder.points = np.maximum.reduceat(points, first)
         self.kind, start = system.lines.dtype, self.poses(system)
         interval = longest_interval(self.sizes[self.blocks.free])
-        self.limits = Limits(start, self._limits(start), VALID_WAY * self.sizes, interval)
+        self.limits = Limits(start, self._limits(start), VALID_DISPLACEMENT * self.sizes, interval)
         blocks = np.column_stack(np.divmod(self.law.jointed, self.count))
         self.motion, self.joints = Motion.initial(start), JointState.intact(of[joint], blocks, left, rolled)
         self.state = self._no_contacts()
@@ -150,15 +150,15 @@ class ContactSearch:
         """How far each block may move from where it stands before its contacts are searched [m], shape (blocks,). Both
         blocks of a pair may. One that is not found is farther than the sum of both sizes."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
-        found = self.finder.found(start, self.sizes, every, jointed)
+        found = self.finder.places_near(start, self.sizes, every, jointed)
         apart = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
         limits = TOWARDS_OTHERS * self.sizes
         for block in (found.face, found.other):
-            way = np.where(apart, TOWARDS_OTHERS * found.gap, VALID_APPROACH * self.sizes[block])
-            np.minimum.at(limits, block, way)
+            allowance = np.where(apart, TOWARDS_OTHERS * found.gap, VALID_APPROACH * self.sizes[block])
+            np.minimum.at(limits, block, allowance)
         return np.asarray(np.maximum(limits, NEAR * self.sizes))
 
-    def _numbers(self, found: Found) -> Integers:
+    def _numbers(self, found: ContactPlaces) -> Integers:
         return pair_number(found.face, found.other, self.count)
 
     def poses(self, system: System) -> Poses:
@@ -183,7 +183,7 @@ class ContactSearch:
             kept = self._searches_of(state.pair) == state.found
             intact = self.jointed[1][~state.handed_over[self.jointed[0]]]
             reach = REACH * (validity.ahead + fall_within(self.limits.interval) + NEAR * self.sizes)
-            found = self.finder.found(motion.poses, reach, validity.outdated, intact)
+            found = self.finder.places_near(motion.poses, reach, validity.outdated, intact)
             may_touch = np.empty(len(found.gap), dtype=bool)
             set_validity(found, motion, self.sizes, validity, may_touch, self.limits.interval)
             may_touch &= found.share > 0
@@ -208,7 +208,7 @@ class ContactSearch:
         return found
 
     def _with_new_lines(
-        self, system: System, books: Books, poses: Poses, found: Found, of_gone: Flags, h: float
+        self, system: System, books: Books, poses: Poses, found: ContactPlaces, of_gone: Flags, h: float
     ) -> System:
         """The system with contact lines at these places. Pairs that have not moved keep their lines.
 
@@ -260,13 +260,13 @@ class ContactSearch:
             joints["margin"][left_joints] = np.inf  # no step takes such a line again
         self._keep(kept, found, number, new.slack, share)
         lines = joined(joints, chosen(others, kept), np.asarray(new.rows))
-        laws = tuple(each.with_found(count, kept, added) for each, added in own)
-        system = system._replace(lines=lines, laws=laws).with_ways()
+        laws = tuple(each.with_search_lines(count, kept, added) for each, added in own)
+        system = system._replace(lines=lines, laws=laws).with_room_for_friction()
         after = account(system, np.arange(len(lines) - size, len(lines)), new.depth)
         self._book(books, before, after, 0.5 * h if state.since > 0 else 0.0)
         return system
 
-    def _keep(self, kept: Flags, found: Found, number: Integers, slack: Array, share: Array) -> None:
+    def _keep(self, kept: Flags, found: ContactPlaces, number: Integers, slack: Array, share: Array) -> None:
         """Keep which lines there are now, and what they have been softened to.
 
         Args:
@@ -283,11 +283,13 @@ class ContactSearch:
 
     def _book(self, books: Books, before: Account, after: Account, half: float) -> None:
         """Book what a search changes, whose forces change half a step before the pose [s]."""
-        given = min(before.sheared - after.sheared, 0.0)  # what shear springs lose friction takes, and it gives nothing
+        shear_change = min(
+            before.sheared - after.sheared, 0.0
+        )  # friction takes what shear springs lose, and gives nothing
         late = half * (after.power - before.power)
-        books.totals[0].encounter_ends += before.energy + given - after.energy - late
+        books.totals[0].encounter_ends += before.energy + shear_change - after.energy - late
         books.totals[0].ground += half * (before.carried - after.carried)
-        books.totals[0].friction += half * (before.rubbed - after.rubbed) - given
+        books.totals[0].friction += half * (before.rubbed - after.rubbed) - shear_change
         books.dashpots[self.group] += half * (before.damped - after.damped) + float(books.encounters.sum())
         books.encounters[:] = 0.0
 
@@ -300,7 +302,7 @@ class ContactSearch:
         """How often both blocks of pairs have been searched."""
         return np.asarray(self.state.validity.searches[np.array(np.divmod(pair, self.count))].sum(axis=0))
 
-    def _stable(self, found: Found, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
+    def _stable(self, found: ContactPlaces, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
         """Share of their law that leaves places stable in a step of h [s], shape (n,)."""
         blocks = np.array([found.face, found.other])
         arms = found.place - poses.drawn[blocks] - poses.moved[blocks]

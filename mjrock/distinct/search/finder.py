@@ -1,10 +1,10 @@
-"""Finder: the places where convex blocks touch or are about to, at any pose.
+"""Finder: contact places of convex blocks that touch or are close to each other, at any pose.
 
-The distance of two blocks is the largest gap along any direction: the normal of a face, or one across an edge of each
-(Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). Where this direction is that of a face the places come from
-`clipping`, and where it is across two edges there is one place. MuJoCo finds such contacts too, but for two faces that
-are nearly flush it gives at most four places, and not always the deepest. The finder decides neither the law of a
-contact nor the motion.
+The distance of two blocks is the largest gap along their separating axes: the normals of their faces, and the vector
+products of an edge of each (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). If that axis is the normal of a face,
+`clipping` gives the places; if it belongs to two edges, there is one place. MuJoCo finds such contacts too, but for two
+faces that are nearly parallel it gives at most four places, and not always the deepest. The law of a contact and the
+motion are the subject of other modules.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ...problem.masonry.blocks.joints import each_with_each
 from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
 from ..rows import Rows, rows
-from .clipping import PLACE, clip, corner_of, face_towards, lay_out, length_of, next_corner, normal_of, write_place
+from .clipping import PLACE, clip, clip_in_grid, corner_of, face_towards, length_of, next_corner, normal_of, write_place
 from .constants import (
     AS_LARGE,
     CANDIDATE_FACES,
@@ -42,16 +42,16 @@ NONE = np.zeros(0, dtype=np.int64)
 """Numbers of no pairs."""
 
 
-class Found(NamedTuple):
-    """Places where two blocks meet or are near.
+class ContactPlaces(NamedTuple):
+    """Contact places: where two blocks touch or are near each other.
 
     Args:
         face, other: block of the face, of two edges either, and the other block, shape (n,).
         place: halfway between the two surfaces [m], shape (n, d).
         normal: unit vector out of the face, shape (n, d).
         gap: between the surfaces, negative for an overlap [m], shape (n,).
-        share: of what the pair has, zero where no face lies over the other, shape (n,).
-        area: of the part of a face that lies over the other [m2], in the plane its length [m], zero for edges, (n,).
+        share: of the law of the pair, zero where no face lies over the other, shape (n,).
+        area: common area of the two faces [m2], in the plane its length [m], zero for edges, shape (n,).
     """
 
     face: Integers
@@ -62,22 +62,22 @@ class Found(NamedTuple):
     share: Array
     area: Array
 
-    def only(self, which: Flags | Integers) -> Found:
+    def only(self, which: Flags | Integers) -> ContactPlaces:
         """Some of the places."""
-        return Found._make(part[which] for part in self)
+        return ContactPlaces._make(part[which] for part in self)
 
 
 class Near(NamedTuple):
     """Which pairs are searched.
 
     Args:
-        low, high: least and largest coordinates of each solid, what it reaches included [m], shape (solids, 3).
-        order: the solids by their low ends along an axis, shape (solids,).
-        axis: its number.
-        reach: of each solid [m], shape (solids,).
-        searched, fixed: shape (solids,). One of two solids is searched, and one is free.
-        rank: of the block of each solid, shape (solids,). Of two with equal faces, or whose edges cross, the first has
-            the normal.
+        low, high: least and largest coordinates of each solid, enlarged by its reach [m], shape (solids, 3).
+        order: the solids by their least coordinate along an axis, shape (solids,).
+        axis: number of that axis.
+        reach: distance up to which places of each solid are wanted [m], shape (solids,).
+        searched, fixed: which solids, shape (solids,). Of a pair at least one is searched, and at least one is free.
+        rank: of the block of each solid, shape (solids,). Where faces are equal or edges cross, the normal is that of
+            the block of lower rank.
         skipped: numbers of pairs of solids that are left out, increasing, see `pair_law.pair_number`.
         jointed: numbers of pairs of solids that had a joint, increasing.
         cells: of the grids of these, along x and z and along y, shape (pairs, 2).
@@ -124,13 +124,13 @@ class Finder:
         self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 3))
 
     def apart(self) -> Finder:
-        """A copy with work arrays of its own, which runs in two threads must not share."""
+        """A copy with work arrays of its own: runs in two threads must not share them."""
         fresh = copy(self)
         fresh._table, fresh._room = self._table.copy(), np.empty_like(self._room)
         return fresh
 
-    def found(self, poses: Poses, reach: Array, searched: Flags, skipped: Integers) -> Found:
-        """Where pairs of blocks of which one is searched are nearer than the sum of what they reach.
+    def places_near(self, poses: Poses, reach: Array, searched: Flags, skipped: Integers) -> ContactPlaces:
+        """Places of pairs of blocks that are nearer than the sum of their reaches, and of which one is searched.
 
         Args:
             poses: of all blocks.
@@ -149,12 +149,12 @@ class Finder:
             self._table = rows(PLACE, 2 * count)
         table, of_parts = self._table[:count].view(np.ndarray), self.number.max() > 1  # faster than records
         table = self._once(table) if of_parts else table
-        found = self._in_order(Found(*(table[name].copy() for name in (PLACE.names or ())[:-1])))
+        found = self._in_order(ContactPlaces(*(table[name].copy() for name in (PLACE.names or ())[:-1])))
         found = self._of_the_plane(found) if self.flat else found
         return self._among_blocks(found) if of_parts else found
 
     def _once(self, table: Rows) -> Rows:
-        """Places of two sides without those that several pairs of parts of their blocks have found alike."""
+        """The places without repetitions: several pairs of parts of two blocks find those of a common side."""
         sides, pair = table["sides"], pair_number(table["face"], table["other"], len(self.owner))
         _, of = np.unique(sides, return_inverse=True)
         first = np.full(len(table) + 1, np.iinfo(np.int64).max)
@@ -162,7 +162,7 @@ class Finder:
         once: Rows = table[(sides < 0) | (pair == first[of])]
         return once
 
-    def _in_order(self, found: Found) -> Found:
+    def _in_order(self, found: ContactPlaces) -> ContactPlaces:
         """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
         in rank, those of a pair together."""
         rank = self._rank[self.owner]
@@ -180,16 +180,16 @@ class Finder:
         return range(self.first[block], self.first[block] + self.number[block])
 
     def posed(self, poses: Poses) -> Solids:
-        """The blocks where they are."""
+        """The solids at some poses."""
         place, change = poses.drawn + poses.moved, poses.change
         if self.flat:
             place, change = np.insert(place, 1, 0.0, axis=1), np.zeros((len(place), 3, 3))
             change[:, ::2, ::2] = poses.change
         return self.solids.moved(place[self.owner], change[self.owner])
 
-    def _among_blocks(self, found: Found) -> Found:
-        """Places of solids as those of blocks, those of a pair together. What a pair has is shared among its pairs of
-        solids by the areas where these lie over each other."""
+    def _among_blocks(self, found: ContactPlaces) -> ContactPlaces:
+        """Places of solids as those of blocks, sorted by pair. The law of a pair of blocks is shared among its pairs of
+        solids in proportion to their common areas."""
         solids, count = pair_number(found.face, found.other, len(self.owner)), len(self.number)
         found = found._replace(face=self.owner[found.face], other=self.owner[found.other])
         blocks = pair_number(found.face, found.other, count)
@@ -201,7 +201,7 @@ class Finder:
         area = np.where(over, in_pair, 0.0)
         return found._replace(share=share, area=area)
 
-    def _of_the_plane(self, found: Found) -> Found:
+    def _of_the_plane(self, found: ContactPlaces) -> ContactPlaces:
         """The places at one end of the prisms."""
         kept = found.only(found.place[:, 1] > 0.5 * self._half)
         normal = kept.normal[:, ::2] / np.hypot(*kept.normal[:, ::2].T)[:, None]
@@ -233,8 +233,8 @@ def steps_of(values: Array) -> Integers:
 
 
 @inlined
-def among(values: Integers, number: int) -> int:
-    """Where a number is among increasing values, -1 where it is not."""
+def index_of(values: Integers, number: int) -> int:
+    """Index of a number in increasing values, -1 where it is none of them."""
     low, high = 0, len(values)
     while low < high:
         middle = (low + high) // 2
@@ -266,21 +266,21 @@ def find(solids: Solids, near: Near, table: Rows, room: Array) -> int:
                 continue
             pair = (a, b) if near.rank[a] < near.rank[b] else (b, a)
             number = min(a, b) * blocks + max(a, b)
-            if are_apart(near, a, b) or among(near.skipped, number) >= 0:
+            if bounds_separated(near, a, b) or index_of(near.skipped, number) >= 0:
                 continue
-            had = among(near.jointed, number)
+            had = index_of(near.jointed, number)
             cells = (near.cells[had, 0], near.cells[had, 1]) if had >= 0 else (1, 1)
             count = find_pair(solids, near.reach[a] + near.reach[b], pair, table, count, room, cells)
     return count
 
 
 @inlined
-def are_apart(near: Near, a: int, b: int) -> bool:
-    """Whether two blocks are apart along an axis."""
-    apart = False
+def bounds_separated(near: Near, a: int, b: int) -> bool:
+    """Whether the bounds of two solids are separated along an axis."""
+    separated = False
     for i in range(3):
-        apart = apart or near.low[a, i] > near.high[b, i] or near.low[b, i] > near.high[a, i]
-    return apart
+        separated = separated or near.low[a, i] > near.high[b, i] or near.low[b, i] > near.high[a, i]
+    return separated
 
 
 @inlined
@@ -293,41 +293,46 @@ def find_pair(
     room: Array,
     cells: tuple[int, int] = (1, 1),
 ) -> int:
-    """Write the places of a pair that is nearer than it reaches [m], on faces in a grid of some cells. Returns how many
-    places there are then, or more than there is room for where there may be."""
+    """Write the places of a pair that is nearer than its reach [m], on faces in a grid of some cells.
+
+    Returns the number of places in the table, or a larger number than it has room for where that may be too small.
+    """
     a, b = blocks
-    face, apart = face_between(solids, a, b, reach)
-    other_face, other_apart = (-1, -math.inf) if apart > reach else face_between(solids, b, a, reach)
-    best = max(apart, other_apart)
+    face, distance = separating_face(solids, a, b, reach)
+    other_face, other_distance = (-1, -math.inf) if distance > reach else separating_face(solids, b, a, reach)
+    best = max(distance, other_distance)
     if best > reach or face < 0 or other_face < 0:
         return count
     if count + len(room) > len(table):
         return count + len(room)
     least = best - CANDIDATE_FACES * min(solids.extent[face], solids.extent[other_face])
     longer = solids.extent[other_face] - solids.extent[face]
-    if other_apart + LARGER_FACE * longer - SECOND_FACE * solids.extent[face] > apart:
+    if other_distance + LARGER_FACE * longer - SECOND_FACE * solids.extent[face] > distance:
         face, blocks = other_face, (b, a)
     if best < 0:
         face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)
         over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
         if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FACES_MEET:
-            way, across = across_edges(solids, a, b)
-            if across > EDGES_MEET * gap:
-                return meet_edges(solids, (a, b), way, across, table, count) if across < reach else count
+            direction, edge_distance = edge_separation(solids, a, b)
+            if edge_distance > EDGES_MEET * gap:
+                if edge_distance >= reach:
+                    return count
+                return write_edges(solids, (a, b), direction, edge_distance, table, count)
     whole = with_whole_sides(solids)
     if cells[0] > 1:
-        last = lay_out(whole, face, blocks, cells, table, count, room)
+        last = clip_in_grid(whole, face, blocks, cells, table, count, room)
     else:
         last = clip(whole, face, blocks, table, count, room)
-    return last if last > count else pass_by(solids, face, blocks, best, table, count)
+    return last if last > count else write_near_corner(solids, face, blocks, best, table, count)
 
 
 @inlined
-def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Rows, count: int) -> int:
-    """Write a corner of a face that another block is near to without a common area, as where two blocks approach at
-    their corners: a place without a share, from which the time of the next search follows.
+def write_near_corner(solids: Solids, face: int, blocks: tuple[int, int], gap: float, table: Rows, count: int) -> int:
+    """Write a corner of a face as a place without a share, from whose gap the time of the next search follows.
 
-    Returns how many places there are then."""
+    It is for blocks that are near each other without a common area, such as two that approach at their corners.
+
+    Returns the number of places in the table."""
     corner = solids.first[face]
     for i in range(corner, solids.first[face + 1]):
         if corner_of(solids, i)[1] > corner_of(solids, corner)[1]:  # at the end of the prisms that is kept
@@ -341,16 +346,16 @@ def pass_by(solids: Solids, face: int, blocks: tuple[int, int], gap: float, tabl
 def shallowest(
     solids: Solids, face: int, blocks: tuple[int, int], least: float, table: Rows, count: int, room: Array
 ) -> tuple[int, tuple[int, int], float]:
-    """The face of two overlapping blocks for which the overlap at the places is smallest, its block and the other one,
-    and the least gap of these places [m].
+    """The face of two overlapping blocks with the smallest overlap at its places, its block and the other one, and the
+    least gap of these places [m].
 
     A corner of the whole face may lie deep below the plane of another one, far from where the two lie over each other.
     A face whose places are open, or that misses the deepest place of the first face, does not separate the blocks.
 
     Args:
         solids: the blocks where they are.
-        face, blocks: the face that the other block is farthest outside of, its block and the other one.
-        least: how far the other block is outside of a face that comes into question [m].
+        face, blocks: the face from which the other block is farthest, its block and the other one.
+        least: distance of the other block from a face from which on that face is a candidate [m].
         table, count, room: for places that are not kept, see `clipping.clip`.
     """
     first = deepest(table, count, clip(solids, face, blocks, table, count, room))
@@ -359,16 +364,16 @@ def shallowest(
         most, middle = table[first].gap, read(table[first].at)
     slack = ON_ENDS * max(-most, 0.0)
     common = there and lies_in(solids, blocks[0], middle, slack) and lies_in(solids, blocks[1], middle, slack)
-    best, of_best, taken = face, blocks, SHALLOWER * most
+    best, of_best, least_gap = face, blocks, SHALLOWER * most
     for turn in range(2):
         block, other = blocks if turn == 0 else (blocks[1], blocks[0])
         for one in range(solids.face[block], solids.face[block + 1]):
-            if one != face and not solids.inside[one] and outside(solids, one, other) > least:
+            if one != face and not solids.inside[one] and distance_outside(solids, one, other) > least:
                 row = deepest(table, count, clip(solids, one, (block, other), table, count, room))
                 gap = table[row].gap if row >= 0 else -math.inf
                 open_or_beside = (there and gap >= 0) or (common and gap > height(solids, one, middle))
-                if gap > taken and not open_or_beside:
-                    best, of_best, taken, most = one, (block, other), gap, gap
+                if gap > least_gap and not open_or_beside:
+                    best, of_best, least_gap, most = one, (block, other), gap, gap
     return best, of_best, most
 
 
@@ -399,78 +404,78 @@ def lies_in(solids: Solids, block: int, at: Vector, slack: float) -> bool:
 
 
 @inlined
-def outside(solids: Solids, face: int, other: int) -> float:
-    """How far a block is outside of a face of another one [m], negative for an overlap."""
+def distance_outside(solids: Solids, face: int, other: int) -> float:
+    """Distance of a block from the plane of a face of another one [m], negative for an overlap."""
     normal = normal_of(solids, face)
-    return -dot(normal, corner_of(solids, solids.first[face])) - farthest(solids, other, scaled(-1.0, normal))
+    return -dot(normal, corner_of(solids, solids.first[face])) - farthest_along(solids, other, scaled(-1.0, normal))
 
 
 @inlined
-def farthest(solids: Solids, block: int, way: Vector) -> float:
-    """How far a block reaches along a direction [m]."""
+def farthest_along(solids: Solids, block: int, direction: Vector) -> float:
+    """Largest coordinate of a block along a direction [m]."""
     most = -math.inf
     for i in range(solids.corner[block], solids.corner[block + 1]):
-        most = max(most, dot(way, triple(solids.corners, i)))
+        most = max(most, dot(direction, triple(solids.corners, i)))
     return most
 
 
 @inlined
-def face_between(solids: Solids, block: int, other: int, reach: float) -> tuple[int, float]:
-    """The face of a block that another block is farthest outside of, and how far [m], negative for an overlap.
+def separating_face(solids: Solids, block: int, other: int, reach: float) -> tuple[int, float]:
+    """The face of a block from whose plane another block is farthest, and that distance [m], negative for an overlap.
 
-    The search ends at a face that the block is farther outside of than it reaches. No contact is on a face inside its
-    block, between two parts of it: a block outside of such a face counts as far."""
+    The search ends at the first face with a distance above the reach. A face between two parts of a block has no
+    contact: a block outside of its plane counts as infinitely far."""
     best, most = -1, -math.inf
     for face in range(solids.face[block], solids.face[block + 1]):
-        apart = outside(solids, face, other)
+        distance = distance_outside(solids, face, other)
         if solids.inside[face]:
-            apart = math.inf if apart >= 0 else -math.inf
-        if apart > most:
-            best, most = face, apart
+            distance = math.inf if distance >= 0 else -math.inf
+        if distance > most:
+            best, most = face, distance
             if most > reach:
                 break
     return best, most
 
 
 @inlined
-def across_edges(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
-    """The direction across an edge of each of two blocks along which they are farthest apart, and how far [m]."""
+def edge_separation(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
+    """The separating axis of two edges along which two blocks are farthest from each other, and that distance [m]."""
     best: Vector = (0.0, 0.0, 0.0)
     most = -math.inf
-    for i in range(solids.way[a], solids.way[a + 1]):
-        for j in range(solids.way[b], solids.way[b + 1]):
-            normal = spun(triple(solids.ways, i), triple(solids.ways, j))
+    for i in range(solids.edge[a], solids.edge[a + 1]):
+        for j in range(solids.edge[b], solids.edge[b + 1]):
+            normal = spun(triple(solids.edges, i), triple(solids.edges, j))
             size = length_of(normal)
             if size < NOT_PARALLEL:
                 continue
             for sign in (1.0, -1.0):
-                way = scaled(sign / size, normal)
-                apart = -farthest(solids, b, scaled(-1.0, way)) - farthest(solids, a, way)
-                if apart > most:
-                    best, most = way, apart
+                direction = scaled(sign / size, normal)
+                distance = -farthest_along(solids, b, scaled(-1.0, direction)) - farthest_along(solids, a, direction)
+                if distance > most:
+                    best, most = direction, distance
     return best, most
 
 
 @inlined
-def edge_towards(solids: Solids, block: int, way: Vector) -> tuple[Vector, Vector]:
-    """The edge of a block that is farthest along a direction: one end [m], and the way to the other."""
-    most, end, along = -math.inf, way, way
+def edge_towards(solids: Solids, block: int, direction: Vector) -> tuple[Vector, Vector]:
+    """The edge of a block that is farthest along a direction: one end, and the vector to the other one [m]."""
+    most, end, along = -math.inf, direction, direction
     for face in range(solids.face[block], solids.face[block + 1]):
         for i in range(solids.first[face], solids.first[face + 1]):
             here, after = corner_of(solids, i), next_corner(solids, face, i)
-            reaches = dot(way, plus(here, after))
+            reaches = dot(direction, plus(here, after))
             if reaches > most:
                 most, end, along = reaches, here, minus(after, here)
     return end, along
 
 
 @inlined
-def meet_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, apart: float, table: Rows, count: int) -> int:
-    """Write the place where two edges cross. Returns how many places there are then."""
+def write_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, gap: float, table: Rows, count: int) -> int:
+    """Write the place where two edges cross. Returns the number of places in the table."""
     if count < len(table):
-        start, along = edge_towards(solids, blocks[0], normal)
-        other, way = edge_towards(solids, blocks[1], scaled(-1.0, normal))
-        share = dot(spun(minus(start, other), along), normal) / dot(spun(way, along), normal)
-        write_place(table[count], blocks, plus(other, scaled(share, way)), normal, apart)
+        start, edge = edge_towards(solids, blocks[0], normal)
+        other, other_edge = edge_towards(solids, blocks[1], scaled(-1.0, normal))
+        share = dot(spun(minus(start, other), edge), normal) / dot(spun(other_edge, edge), normal)
+        write_place(table[count], blocks, plus(other, scaled(share, other_edge)), normal, gap)
         table[count].share, table[count].area = SHARE_OF_EDGES, 0.0
     return count + 1

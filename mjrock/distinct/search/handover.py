@@ -1,7 +1,7 @@
-"""Handover: replaces contact lines of two blocks by newly found ones, and keeps their force, friction and energy.
+"""Handover: replaces the contact lines of two blocks by newly found ones, which take over force, friction and energy.
 
-The new lines of a pair start with at most the force and energy of those before them, so that a search adds no energy.
-Each takes over the friction of the old lines that it is nearest to.
+The new lines of a pair start with at most the force and energy of the old ones, so that a search adds no energy. The
+friction of each old line goes to the nearest new ones.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ from ..contacts.friction import along_face, shortened, turned_along
 from ..contacts.touches import FIRST_OPENING
 from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
 from .constants import AS_NEAR, REGAINED, SAME_NORMAL, SAME_PLACE
-from .finder import Found
+from .finder import ContactPlaces
 from .solids import Poses, changed
 
 
 class Blocks(NamedTuple):
-    """All blocks, and the numbers by which they go.
+    """All blocks, with their numbers as bodies, fixed blocks and supports.
 
     Args:
-        poses: where they are.
+        poses: of all blocks.
         sizes: the largest distance of a corner from the centroid of each [m], shape (blocks,).
         free: the block of each body, shape (bodies,).
         body: the body of each block, negative for a fixed one, shape (blocks,).
@@ -59,8 +59,8 @@ class Lines(NamedTuple):
 
     Args:
         rows: their numbers.
-        slack, depth: the part of the overlap of each without force, and the part with force [m], shape (n,) each.
-        at: room for their points [m], shape (n, d).
+        slack, depth: parts of the overlap of each without force and with force [m], shape (n,) each.
+        at: room for the positions of their points [m], shape (n, d).
     """
 
     rows: Rows
@@ -75,11 +75,11 @@ class Lines(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Which places and which lines that are gone belong to the same two blocks.
+    """Which new places and which old lines belong to the same two blocks.
 
     Args:
         first: where the places of each pair begin, and where those of the last end, shape (pairs + 1,).
-        low, high: where the lines of each pair that are gone begin and end, shape (pairs,) each.
+        low, high: where the old lines of each pair begin and end, shape (pairs,) each.
     """
 
     first: Integers
@@ -88,8 +88,7 @@ class Pairs(NamedTuple):
 
     @classmethod
     def belonging(cls, places: Integers, gone: Integers) -> Pairs:
-        """From the number of the pair of each place, where those of a pair stand together, and of each line that is
-        gone, where they increase."""
+        """From the number of the pair of each place, those of a pair together, and of each old line, increasing."""
         first = np.concatenate([[0], np.flatnonzero(np.diff(places)) + 1, [len(places)]])
         pairs = places[first[:-1]] if len(places) else places
         return cls(first, *(np.searchsorted(gone, pairs, side) for side in ("left", "right")))
@@ -109,12 +108,12 @@ def turned_back(poses: Poses, block: int, a: Vector) -> Vector:
 
 @inlined
 def centroid(poses: Poses, block: int, like: Vector) -> Vector:
-    """Where the centroid of a block is [m], with as many components as another vector."""
+    """Position of the centroid of a block [m], with as many components as another vector."""
     return plus(vector(poses.drawn, block, like), vector(poses.moved, block, like))
 
 
 class Place(NamedTuple):
-    """Where a line is.
+    """Position and face of a line.
 
     Args:
         at: its point [m].
@@ -131,14 +130,14 @@ class Place(NamedTuple):
 
 @inlined
 def place_of(line: Row, both: int, blocks: Blocks) -> Place:
-    """Where a line is, of a pair of blocks whose numbers have some sum."""
+    """Position and face of a line, from the sum of the numbers of its two blocks."""
     poses, block = blocks.poses, blocks.free[line.body]
     face, normal, own = both - block, read(line.normal), read(line.at)
     arm = turned(poses, block, own)
     at = plus(centroid(poses, block, own), arm)
     if line.face == POINT_ON_FIXED_BLOCK:
-        way = minus(plus(minus(arm, own), vector(poses.moved, block, own)), vector(poses.moved, face, own))
-        at, normal = minus(at, plus(read(line.between), way)), turned(poses, block, normal)
+        shift = minus(plus(minus(arm, own), vector(poses.moved, block, own)), vector(poses.moved, face, own))
+        at, normal = minus(at, plus(read(line.between), shift)), turned(poses, block, normal)
     elif line.face >= 0:
         normal = turned(poses, face, normal)
     return Place(at, normal, face, 1.0 if block > face else -1.0)
@@ -169,10 +168,13 @@ def nearest(lines: Lines, ends: tuple[int, int], at: Vector) -> tuple[int, float
 
 
 @inlined
-def pressed_at(line: Row, i: int, found: Found, gone: Lines, ends: tuple[int, int], blocks: Blocks) -> float:
-    """The part of the overlap of place i, where a new line is, that has a force [m], if a line of its pair was there,
-    see `hand_over`. It is that of the nearest line of such a normal: at a corner two joints of a pair may have their
-    lines.
+def pressed_overlap(
+    line: Row, i: int, found: ContactPlaces, gone: Lines, ends: tuple[int, int], blocks: Blocks
+) -> float:
+    """The part of the overlap of new place i that has a force, zero if no old line of its pair was there [m].
+
+    It is the overlap less the slack of the nearest old line with a similar normal: at a corner two joints of a pair may
+    have lines. See `hand_over`.
     """
     overlap: float = max(-found.gap[i], 0.0)
     like = read(line.normal)
@@ -190,19 +192,20 @@ def pressed_at(line: Row, i: int, found: Found, gone: Lines, ends: tuple[int, in
 
 
 @inlined
-def press(new: Lines, places: tuple[int, int], found: Found, gone: Lines, ends: tuple[int, int]) -> None:
-    """Give the places of a pair in all the normal force of the lines that they replace, and no more energy. A pair that
-    has lost force in a search gets it back in later ones, since blocks would otherwise sink into each other from search
-    to search.
+def press(new: Lines, places: tuple[int, int], found: ContactPlaces, gone: Lines, ends: tuple[int, int]) -> None:
+    """Give the places of a pair together the normal force of the lines that they replace, and no more energy.
+
+    A pair that has lost force in a search regains it in later ones: otherwise blocks would sink into each other from
+    search to search.
     """
-    force = energy = had = held = 0.0
+    force = energy = force_before = energy_before = 0.0
     for j in range(ends[0], ends[1]):
-        had += normal_force(gone.rows[j], -gone.depth[j], 0.0)
-        held += stored(gone.rows[j], -gone.depth[j])
+        force_before += normal_force(gone.rows[j], -gone.depth[j], 0.0)
+        energy_before += stored(gone.rows[j], -gone.depth[j])
     for i in range(places[0], places[1]):
         force += normal_force(new.rows[i], -new.depth[i], 0.0)
         energy += stored(new.rows[i], -new.depth[i])
-    of_force, of_energy = (min(REGAINED, had / force), held / energy) if force > 0 else (0.0, 0.0)
+    of_force, of_energy = (min(REGAINED, force_before / force), energy_before / energy) if force > 0 else (0.0, 0.0)
     for i in range(places[0], places[1]):
         row, depth = new.rows[i], new.depth[i]
         pressed = min(depth_of_force(row, of_force, depth), depth_of_energy(row, of_energy, depth))
@@ -210,26 +213,26 @@ def press(new: Lines, places: tuple[int, int], found: Found, gone: Lines, ends: 
 
 
 @inlined
-def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks) -> None:
-    """Write where the point and the face of place i are, in the axes of their blocks.
+def write_line(line: Row, i: int, slack: float, found: ContactPlaces, blocks: Blocks) -> None:
+    """Write the point and the face of place i, in the axes of their blocks.
 
-    A fixed block carries no point but where its corner meets the face of a body.
+    A fixed block carries a point only where its corner meets the face of a body.
     """
     like = read(line.normal)
     poses, face, block, normal = blocks.poses, found.face[i], found.other[i], vector(found.normal, i, like)
     point = blocks.body[block] < 0
     if point:
         face, block, normal = block, face, scaled(-1.0, normal)
-    held, half, place = blocks.body[face] < 0, scaled(0.5 * found.gap[i], normal), vector(found.place, i, like)
+    fixed, half, place = blocks.body[face] < 0, scaled(0.5 * found.gap[i], normal), vector(found.place, i, like)
     at = turned_back(poses, block, minus(plus(place, half), centroid(poses, block, like)))
     origin = minus(minus(place, half), scaled(slack, normal))
     between = plus(vector(poses.drawn, block, like), at)
-    if held:
+    if fixed:
         origin = minus(origin, vector(poses.moved, face, like))
     else:
         origin = turned_back(poses, face, minus(origin, centroid(poses, face, like)))
         between = minus(between, vector(poses.drawn, face, like))
-    if point or not held:
+    if point or not fixed:
         normal = turned_back(poses, block if point else face, normal)
     line.body, line.face = blocks.body[block], POINT_ON_FIXED_BLOCK if point else blocks.body[face]
     line.support, line.fixed = blocks.support[face], blocks.fixed[face]
@@ -241,8 +244,8 @@ def write_line(line: Row, i: int, slack: float, found: Found, blocks: Blocks) ->
 
 @inlined
 def along_new(along: Vector, old: Place, new: Place) -> Vector:
-    """The force or elongation that a line keeps along its face, in the axes of another face. In the plane it is a
-    number along the tangent. Past an end of its face it is turned back along this first.
+    """The force or elongation of a line along its face, in the axes of another face. In the plane it is a number along
+    the tangent. Of a line past an end of its face it is first turned into the face.
     """
     sense = old.sense * new.sense
     if len(along) == 1:
@@ -254,8 +257,8 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
 def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks) -> None:
     """Give a line a share of the friction of one that it replaces, and of its normal force of the last step.
 
-    Of a spring along the face the force is kept, as that of rigid friction is. Of several the deepest
-    gives its rate.
+    The force of a shear spring is kept, as that of rigid friction is. The rate is that of the deepest line that it
+    replaces.
     """
     poses, old, new = blocks.poses, place_of(gone, both, blocks), place_of(line, both, blocks)
     line.push, line.pressed = line.push + share * gone.push, line.pressed + share * gone.pressed
@@ -273,9 +276,7 @@ def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks) -> None:
 
 @inlined
 def give_to_nearest(gone: Row, new: Lines, places: tuple[int, int], both: int, blocks: Blocks) -> None:
-    """Give the forces of a line that is replaced to the nearest places of its pair. Places that are equally near share
-    them.
-    """
+    """Give the forces of a line that is replaced to the nearest place of its pair, or to all that are as near."""
     at, count = place_of(gone, both, blocks).at, 0
     _, off = nearest(new, places, at)
     near = AS_NEAR * off * off
@@ -287,32 +288,31 @@ def give_to_nearest(gone: Row, new: Lines, places: tuple[int, int], both: int, b
 
 
 @compiled_at_once
-def keep_depths(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
-    """Write the part of the overlap of each place that had a force, and where lines that are gone have their points,
-    see `hand_over`."""
+def keep_depths(new: Lines, found: ContactPlaces, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
+    """Write the part of the overlap of each place that has a force, and the positions of the old lines, see
+    `hand_over`."""
     for p in range(len(pairs.low)):
         begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
         both = found.face[begin] + found.other[begin]
         for j in range(ends[0], ends[1]):
             put(gone.at[j], place_of(gone.rows[j], both, blocks).at)
         for i in range(begin, end):
-            new.depth[i] = pressed_at(new.rows[i], i, found, gone, ends, blocks)
+            new.depth[i] = pressed_overlap(new.rows[i], i, found, gone, ends, blocks)
 
 
 @compiled_at_once
-def hand_over(new: Lines, found: Found, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
-    """Write the lines of places, and give them the forces of the lines of their pair that they replace.
+def hand_over(new: Lines, found: ContactPlaces, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
+    """Write the lines of new places, and give them the forces of the lines of their pair that they replace.
 
-    The part of the overlap without force is written too. It is the whole overlap of a place that no line was near, for
-    as long as this overlap lasts. So a contact that an earlier search has missed, or one that touched at rest without a
-    joint, adds no energy. The places of a pair have the normal force of the lines before them where they can, and no
-    more energy. Each line that is replaced gives all of its force along its face to the nearest new ones, so that the
-    forces of a pair are kept.
+    Of a place that no old line was near, the whole overlap has no force for as long as it lasts. So a contact that an
+    earlier search has missed, or one that touched at rest without a joint, adds no energy. The places of a pair get the
+    normal force of the old lines as far as their overlaps allow it, and no more energy. Each old line gives all of its
+    force along the face to the nearest new ones, so that the force of a pair is kept.
 
     Args:
-        new: rows with the law of each place, `keep_depths`, and room for what does not press of their overlap.
+        new: rows with the law and the depth of each place, see `keep_depths`, and room for their slack.
         found: the places, those of a pair together.
-        gone: the lines that are gone, in the order of their pairs.
+        gone: the old lines, in the order of their pairs.
         pairs: which of both belong together.
         blocks: all blocks.
     """

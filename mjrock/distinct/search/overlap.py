@@ -50,7 +50,7 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
     poses = {i: _poses_at(search, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
     every, deepest = np.ones(search.count, dtype=bool), set[tuple[float, int, int, int]]()
     for i, there in poses.items():
-        found = search.finder.found(there, np.zeros(search.count), every, np.zeros(0, dtype=np.int64))
+        found = search.finder.places_near(there, np.zeros(search.count), every, np.zeros(0, dtype=np.int64))
         pairs, of = np.unique(pair_number(found.face, found.other, search.count), return_inverse=True)
         blocks = np.array(np.divmod(pairs, search.count))
         deep = np.bincount(of, weights=found.share * np.maximum(-found.gap, 0.0))

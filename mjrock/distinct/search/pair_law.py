@@ -292,10 +292,10 @@ def longest_steps_of(solids: Sequence[Solid], law: PairLaw, slowest: Array, syst
     sprung = slower & np.isfinite(shared[:, 2])
     damped[sprung, 3] = slowest[sprung] * shared[sprung, 2]
     both = np.array([0, 1, 0, 1, 0]) > 0
-    given, slow = (
+    of_requested, slow = (
         longest_step_of_some(solids, slower, law, each, system) for each in (np.where(both, 0.0, shared), damped)
     )
-    return LongestSteps(loose, given, slow / given)
+    return LongestSteps(loose, of_requested, slow / of_requested)
 
 
 def longest_step_of_some(solids: Sequence[Solid], some: Flags, law: PairLaw, shared: Array, system: System) -> float:

@@ -70,7 +70,7 @@ class Room(NamedTuple):
 
 
 @inlined
-def way_at(normal: Vector, i: int) -> Vector:
+def direction_at(normal: Vector, i: int) -> Vector:
     """The normal of a place, or a direction along its face."""
     if i == 0:
         return normal
@@ -80,15 +80,15 @@ def way_at(normal: Vector, i: int) -> Vector:
 
 
 @inlined
-def trace_of(body: Row, sides: Sides, side: int, p: int, along: float, across: float) -> float:
+def trace_of(body: Row, sides: Sides, side: int, p: int, k_normal: float, k_tangent: float) -> float:
     """The trace of the stiffness of place p over the masses of one of its bodies."""
     masses = read(body.inverse_mass)
     trace, arm, normal = 0.0, vector(sides.arms[side], p, masses), vector(sides.normals, p, masses)
-    for way in range(len(masses)):
-        direction = way_at(normal, way)
+    for k in range(len(masses)):
+        direction = direction_at(normal, k)
         turning = moment(arm, direction)
         moved = dot(times(masses, direction), direction)
-        trace += (along if way == 0 else across) * (moved + dot(spin_from_many(body, turning), turning))
+        trace += (k_normal if k == 0 else k_tangent) * (moved + dot(spin_from_many(body, turning), turning))
     return trace
 
 
@@ -114,18 +114,18 @@ def split(sides: Sides, room: Room) -> None:
 
 
 @inlined
-def stiffen(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room) -> None:
+def stiffen(sides: Sides, k_normal: Array, k_tangent: Array, bodies: Rows, room: Room) -> None:
     """Add up the stiffness of each body with much load by its places, over its shares of them."""
     for side in range(2):
-        for p in range(len(along)):
+        for p in range(len(k_normal)):
             body = sides.bodies[side, p]
             if body < 0 or room.loads[body] <= STABLE:
                 continue
             normal = vector(sides.normals, p, read(bodies[body].inverse_mass))
-            for way in range(len(normal)):
-                direction = way_at(normal, way)
+            for n in range(len(normal)):
+                direction = direction_at(normal, n)
                 rate = direction + moment(vector(sides.arms[side], p, normal), direction)
-                k = along[p] if way == 0 else across[p]
+                k = k_normal[p] if n == 0 else k_tangent[p]
                 for i in range(len(rate)):
                     for j in range(len(rate)):
                         room.stiffness[body, i, j] += k / room.shares[side, p] * rate[i] * rate[j]
@@ -155,24 +155,24 @@ def squared(a: Array, square: Array) -> float:
 
 
 @compiled_at_once
-def soften(sides: Sides, along: Array, across: Array, bodies: Rows, room: Room) -> None:
+def soften(sides: Sides, k_normal: Array, k_tangent: Array, bodies: Rows, room: Room) -> None:
     """Write the share of their stiffness that the places of each body keep, see `shares_within`.
 
     Args:
         sides: the two blocks of each place.
-        along, across: stiffness along the normal and along the face of each place, shape (n,).
+        k_normal, k_tangent: stiffness along the normal and along the face of each place, shape (n,).
         bodies: whose inverse inertia is taken in the axes of the world, in space.
         room: with shares of 1 and no stiffness.
     """
     for side in range(2):
-        for p in range(len(along)):
+        for p in range(len(k_normal)):
             if sides.bodies[side, p] >= 0:
                 body = bodies[sides.bodies[side, p]]
-                room.traces[side, p] = trace_of(body, sides, side, p, along[p], across[p])
+                room.traces[side, p] = trace_of(body, sides, side, p, k_normal[p], k_tangent[p])
     add_up(sides, room)
     split(sides, room)
     add_up(sides, room)
-    stiffen(sides, along, across, bodies, room)
+    stiffen(sides, k_normal, k_tangent, bodies, room)
     for b in range(len(bodies)):
         if room.loads[b] > STABLE:
             over_masses(bodies[b], room.stiffness[b], room.powers[0])
@@ -191,16 +191,16 @@ def shares_within(sides: Sides, law: dict[str, Array], bodies: Rows, step: float
         bodies: whose inverse inertia is taken in the axes of the world, in space.
         step: that is to be stable [s].
     """
-    along = (
+    k_normal = (
         step**2 * largest_stiffness(Law(**{name: law[name] for name in Law._fields if name in law}))
         + 2 * step * law["c"]
     )
-    across = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
+    k_tangent = np.where(np.isfinite(law["k_s"]), step**2 * law["k_s"] + 2 * step * law["c_s"], 0.0)
     nv, share = 3 * sides.normals.shape[1] - 3, np.ones(len(bodies) + 1)
     stiffness, powers = np.zeros((len(bodies), nv, nv)), np.empty((2, nv, nv))
     traces, shares = np.zeros(sides.bodies.shape), np.ones(sides.bodies.shape)
     room = Room(traces, shares, np.empty(len(bodies)), stiffness, powers, share)
-    soften(sides, along, across, bodies, room)
+    soften(sides, k_normal, k_tangent, bodies, room)
     return np.asarray(share[sides.bodies].min(axis=0))
 
 

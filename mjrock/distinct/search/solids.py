@@ -29,8 +29,8 @@ class Solids(NamedTuple):
         corner: where those of each block begin, and where those of the last end, shape (blocks + 1,).
         normals: out of the faces of all blocks, shape (faces, 3).
         face: where those of each block begin, and where those of the last end, shape (blocks + 1,).
-        ways: directions of the edges of all blocks, parallel ones once, shape (ways, 3).
-        way: where those of each block begin, and where those of the last end, shape (blocks + 1,).
+        edges: directions of the edges of all blocks, parallel ones once, shape (ways, 3).
+        edge: where those of each block begin, and where those of the last end, shape (blocks + 1,).
         outline: numbers of the corners around each face, one face after the other.
         first: where those of each face begin, and where those of the last end, shape (faces + 1,).
         inside: which faces lie inside the block that they are a part of, where nothing meets them, shape (faces,).
@@ -45,8 +45,8 @@ class Solids(NamedTuple):
     corner: Integers
     normals: Array
     face: Integers
-    ways: Array
-    way: Integers
+    edges: Array
+    edge: Integers
     outline: Integers
     first: Integers
     inside: Flags
@@ -83,8 +83,8 @@ class Solids(NamedTuple):
             corner=corner,
             normals=normals,
             face=_begins(block.normals for block in blocks),
-            ways=np.concatenate(edges),
-            way=_begins(edges),
+            edges=np.concatenate(edges),
+            edge=_begins(edges),
             outline=np.concatenate(outlines),
             first=_begins(outlines),
             inside=np.concatenate(inside),
@@ -97,8 +97,8 @@ class Solids(NamedTuple):
 
     def moved(self, place: Array, change: Array) -> Solids:
         """The blocks at centroids [m], shape (blocks, 3), turned from where they are by rotations less 1."""
-        corners, normals, ways = (np.empty_like(each) for each in (self.corners, self.normals, self.ways))
-        moved = self._replace(corners=corners, normals=normals, ways=ways)
+        corners, normals, edges = (np.empty_like(each) for each in (self.corners, self.normals, self.edges))
+        moved = self._replace(corners=corners, normals=normals, edges=edges)
         move(self, place, change, moved)
         return moved
 
@@ -148,8 +148,8 @@ def with_whole_sides(solids: Solids) -> Solids:
         solids.corner,
         solids.normals,
         solids.face,
-        solids.ways,
-        solids.way,
+        solids.edges,
+        solids.edge,
         solids.around,
         solids.begin,
         solids.inside,
@@ -171,8 +171,8 @@ def move(solids: Solids, place: Array, change: Array, moved: Solids) -> None:
             increase(moved.corners[i], triple(place, b))
         for i in range(solids.face[b], solids.face[b + 1]):
             put(moved.normals[i], changed(turn, triple(solids.normals, i)))
-        for i in range(solids.way[b], solids.way[b + 1]):
-            put(moved.ways[i], changed(turn, triple(solids.ways, i)))
+        for i in range(solids.edge[b], solids.edge[b + 1]):
+            put(moved.edges[i], changed(turn, triple(solids.edges, i)))
 
 
 def _begins(tables: Iterable[Array | Integers]) -> Integers:

@@ -12,13 +12,13 @@ from ...compiled import compiled_at_once, inlined
 from ...geometry.vectors import dot, plus, put, read, scaled, vector
 from ...problem.masonry.laws.joint_law import normal_force, stored
 from ...quantities import GRAVITY, Array, Flags, Integers
-from ..contacts.contact import meeting, over_face, relative, where_friction_rubs
+from ..contacts.contact import meeting, position_over_face, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sheared
-from ..kinds.lists import is_held, stored_by_laws
+from ..kinds.lists import is_bonded, stored_by_laws
 from ..rotation import in_world, rotation_change, take_inverse_inertia, update_rotation
 from ..system import System, Tables
 from .constants import LONGEST_INTERVAL, NEAR, REACH, SEARCHED_TOGETHER, SHORTEST_INTERVAL, VALID_APPROACH
-from .finder import Found
+from .finder import ContactPlaces
 from .handover import Blocks
 from .solids import Poses
 
@@ -194,12 +194,12 @@ def update_motion(system: System, blocks: Blocks, motion: Motion) -> None:
 @inlined
 def displacement_of(poses: Poses, other: Poses, block: int, size: float) -> float:
     """Largest displacement of a corner of a block from where it is in other poses [m]."""
-    way = turned = 0.0
+    square = turned = 0.0
     for i in range(poses.moved.shape[1]):
-        way += (poses.moved[block, i] - other.moved[block, i]) ** 2
+        square += (poses.moved[block, i] - other.moved[block, i]) ** 2
         for j in range(poses.moved.shape[1]):
             turned += (poses.change[block, i, j] - other.change[block, i, j]) ** 2
-    return math.sqrt(way) + math.sqrt(turned) * size
+    return math.sqrt(square) + math.sqrt(turned) * size
 
 
 @inlined
@@ -255,8 +255,8 @@ def mark_outdated(motion: Motion, sizes: Array, limits: Limits, validity: Validi
         if searched:
             valid_for = max(validity.valid_for[block] - since, 0.0)
         validity.ahead[block] = interval * speed
-        way = displacement_of(motion.poses, limits.start, block, size) + validity.ahead[block]
-        validity.searched[block] = searched or left[block] or way > limits.first_search[block]
+        distance = displacement_of(motion.poses, limits.start, block, size) + validity.ahead[block]
+        validity.searched[block] = searched or left[block] or distance > limits.first_search[block]
         outdated = left[block] or validity.searched[block] != searched
         if searched and not outdated:
             moved = displacement_of(motion.poses, validity.motion.poses, block, size) > limits.displacement[block]
@@ -283,7 +283,7 @@ def approach_speed(motion: Motion, one: int, other: int) -> float:
 
 @compiled_at_once
 def set_validity(
-    found: Found, motion: Motion, sizes: Array, validity: Validity, may_touch: Flags, interval: float
+    found: ContactPlaces, motion: Motion, sizes: Array, validity: Validity, may_touch: Flags, interval: float
 ) -> None:
     """Write for how long the contacts that a search has found are valid.
 
@@ -322,12 +322,12 @@ def update_joints(system: System, joints: JointState) -> None:
         slip[pair], gap[pair], tilt[pair] = 0.0, math.inf, 0.0
     for p in range(len(pairs)):
         line = system.lines[p]
-        across, normal, _, _ = over_face(system, line)
-        own, apart = in_world(system.bodies[line.body], read(line.normal)), dot(normal, across)
-        slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(across, across) - apart * apart, 0.0)))
-        gap[pairs[p]] = min(gap[pairs[p]], apart)
+        offset, normal, _, _ = position_over_face(system, line)
+        own, opening = in_world(system.bodies[line.body], read(line.normal)), dot(normal, offset)
+        slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(offset, offset) - opening * opening, 0.0)))
+        gap[pairs[p]] = min(gap[pairs[p]], opening)
         tilt[pairs[p]] = max(tilt[pairs[p]], 1 - dot(own, normal))
-        line.widest = max(line.widest, apart)
+        line.widest = max(line.widest, opening)
 
 
 @inlined
@@ -342,7 +342,7 @@ def mark_left(laws: Tables, joints: JointState, handed_over: Flags, left: Flags)
         slid = max(joints.slip[pair], joints.gap[pair]) > joints.slip_limit[pair]
         joints.left[pair] = not handed_over[pair] and (slid or joints.tilt[pair] > joints.tilt_limit[pair])
     for p in range(len(joints.pairs)):
-        if joints.left[joints.pairs[p]] and is_held(laws, p):
+        if joints.left[joints.pairs[p]] and is_bonded(laws, p):
             joints.left[joints.pairs[p]] = False
     for pair in range(len(handed_over)):
         if joints.left[pair]:
@@ -364,10 +364,10 @@ def sums(system: System, which: Integers, depth: Array) -> tuple[float, ...]:
         depth[i] = max(-meet.gap, 0.0)
         energy += stored(line, meet.gap)
         if meet.gap < 0:
-            rate = dot(meet.normal, relative(system.bodies, line, system.supports, meet))
+            rate = dot(meet.normal, relative_velocity(system.bodies, line, system.supports, meet))
             power += normal_force(line, meet.gap, 0.0) * rate
         meet = where_friction_rubs(meet)
-        velocity, drag = relative(system.bodies, line, system.supports, meet), read(line.dragged)
+        velocity, drag = relative_velocity(system.bodies, line, system.supports, meet), read(line.dragged)
         moved += carried(line, system.supports, plus(scaled(line.push, meet.normal), as_vector(meet.normal, drag)))
         rubbed -= dot(drag, along_face(meet.normal, velocity))
         damped -= line.pressed * dot(meet.normal, velocity)

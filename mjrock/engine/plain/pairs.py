@@ -24,7 +24,7 @@ from .pieces import Piece
 
 NEWMARK = 0.25
 """Newmark's beta of the contacts: average acceleration, which is stable at every step [-]."""
-HELD_MASSES = 100.0
+FRICTION_MASSES = 100.0
 """Inertia of a friction row of several bodies in masses of the body that it holds [-]. Under an acceleration a along
 its face a contact that sticks creeps at a h / HELD_MASSES. With ten times as much a step of thirty blocks takes 1.7
 times as long."""
@@ -44,7 +44,7 @@ class Pairs:
         weight: sum of MuJoCo's inverse weights of the two bodies [1/kg], shape (p + 1,).
         k, c: spring [N/m] and dashpot [N s/m] of one point, shape (p + 1,).
         friction: coefficient of friction [-], shape (p + 1,).
-        held: inertia of a friction row in masses of the body that it holds [-].
+        friction_inertia: inertia of a friction row in masses of the body that it holds [-].
     """
 
     pieces: Integers
@@ -53,7 +53,7 @@ class Pairs:
     k: Array
     c: Array
     friction: Array
-    held: float
+    friction_inertia: float
 
     @classmethod
     def in_scene(cls, scene: Scene, pieces: list[Piece]) -> Pairs:
@@ -70,8 +70,8 @@ class Pairs:
         weight = inverse[carrier[found]].sum(axis=1)
         law = np.stack([weight, k, c, friction])
         others = [1.0, *np.median([weight * k, weight * c, friction], axis=1)]
-        held = METHOD.held_masses if len(bodies.names) == 1 else HELD_MASSES
-        alone, given = _given(scene, pieces, found)
+        held = METHOD.held_masses if len(bodies.names) == 1 else FRICTION_MASSES
+        alone, given = _pairs_without_joint(scene, pieces, found)
         heavy = inverse[carrier[alone]].sum(axis=1)
         stiff = np.divide(others[1], heavy)
         law = np.column_stack([law, [heavy, stiff, given[:, 1] * stiff, given[:, 0]]])
@@ -91,7 +91,7 @@ class Pairs:
             dashpot, inertia[i] = row(*given)
             *solref[i], impedance[i] = pair_values(self.k[i], dashpot, inertia[i], self.weight[i])
         grips = self.friction > 0
-        held = self.held / self.weight[grips]
+        held = self.friction_inertia / self.weight[grips]
         ratio = float((held / inertia[grips]).min()) if grips.any() else 1.0
         return PairRows(solref, impedance, -impedance / timestep, max(1.0, ratio))
 
@@ -107,7 +107,7 @@ class PairRows:
     impratio: float
 
 
-def _given(scene: Scene, pieces: list[Piece], found: Integers) -> tuple[Integers, Array]:
+def _pairs_without_joint(scene: Scene, pieces: list[Piece], found: Integers) -> tuple[Integers, Array]:
     """Pieces of two blocks without a joint whose law the masonry gives, shape (n, 2), and the friction and dashpot over
     spring of each two, shape (n, 2)."""
     alone, given = list[tuple[int, int]](), list[PairProperties]()
@@ -117,8 +117,8 @@ def _given(scene: Scene, pieces: list[Piece], found: Integers) -> tuple[Integers
         by_block = {name: [i for i, each in enumerate(pieces) if each.block == name and each.meets] for name in names}
         for i, j in combinations(range(len(names)), 2):
             one, other = by_block[names[i]], by_block[names[j]]
-            held = all(pieces[k].body == GROUND for k in (*one[:1], *other[:1]))
-            if held or {names[i], names[j]} in jointed or (meets := scene.springs.of_pair(i, j)) is None:
+            fixed = all(pieces[k].body == GROUND for k in (*one[:1], *other[:1]))
+            if fixed or {names[i], names[j]} in jointed or (meets := scene.springs.of_pair(i, j)) is None:
                 continue
             pairs = [(min(pair), max(pair)) for pair in product(one, other)]
             alone, given = [*alone, *pairs], [*given, *[meets] * len(pairs)]

@@ -278,7 +278,7 @@ def parts_of_wall(wall: Block) -> tuple[Convex, ...]:
         float(opening.sill + share * opening.height) for opening in front.openings if opening.round for share in ROUND
     }
     for ends, thickness in wall.section.slabs(heights):
-        faces = np.transpose(wall.section.across(thickness)).tolist()
+        faces = np.transpose(wall.section.x_of_faces(thickness)).tolist()
         for left, right in _beside_openings(wall, *ends):
             bottom, top = ((z, a, b) for z, a, b in zip(ends, left, right, strict=True))
             parts.append(_slab(bottom, top, faces))

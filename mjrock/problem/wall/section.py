@@ -159,8 +159,8 @@ class Section(NamedTuple):
     profile: Profile
     plumb: str
 
-    def across(self, thickness: Array) -> tuple[Array, Array]:
-        """Where the inner and the outer face are, x [m], at places of a thickness [m], shape (n,) each."""
+    def x_of_faces(self, thickness: Array) -> tuple[Array, Array]:
+        """x of the inner and of the outer face at places of a thickness [m], shape (n,) each."""
         half = 0.5 * self.profile[0][1]
         if self.plumb == "outer":
             return half - thickness, np.full(np.shape(thickness), half)
@@ -168,11 +168,11 @@ class Section(NamedTuple):
 
     def faces(self, z: Array) -> tuple[Array, Array]:
         """Where the inner and the outer face are at heights [m], x [m], of the thicker part at a step; (n,) each."""
-        return self.across(np.maximum(*self._thicknesses(z)))
+        return self.x_of_faces(np.maximum(*self._thicknesses(z)))
 
     def met(self, z: Array) -> tuple[Array, Array]:
         """Where a crack at heights [m] begins and ends, x [m]: the faces of the thinner part at a step; (n,) each."""
-        return self.across(np.minimum(*self._thicknesses(z)))
+        return self.x_of_faces(np.minimum(*self._thicknesses(z)))
 
     def _thicknesses(self, z: Array) -> tuple[Array, Array]:
         """The thickness just above and just below heights [m], shape (n,) each."""
@@ -190,14 +190,14 @@ class Section(NamedTuple):
         """Corners of the inner face from the base up to a height [m], shape (n, 2)."""
         if self.plumb == "inner":
             return np.array([(-0.5 * self.profile[0][1], 0.0), (-0.5 * self.profile[0][1], top)])
-        slabs = [(z, self.across(t)[0]) for z, t in self.slabs({top}) if z[1] <= top]
+        slabs = [(z, self.x_of_faces(t)[0]) for z, t in self.slabs({top}) if z[1] <= top]
         return np.concatenate([np.column_stack([inner, z]) for z, inner in slabs])
 
     @property
     def outline(self) -> Array:
         """Corners, counter-clockwise from the inner edge of the base [m], shape (n, 2)."""
         heights, thicknesses = np.transpose(self.profile)
-        inner, outer = (np.column_stack([x, heights]) for x in self.across(thicknesses))
+        inner, outer = (np.column_stack([x, heights]) for x in self.x_of_faces(thicknesses))
         if self.plumb == "outer":
             outer = outer[[0, -1]]
         else:
@@ -306,7 +306,7 @@ def moments(section: Section, front: Front, between: tuple[float, float] = (0.0,
             share, weight = np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6
             z = low + (high - low) * share
             weight = weight * front.net_length(np.array(0.5 * (low + high)))
-        faces = section.across(ends[0] + (ends[1] - ends[0]) * share)
+        faces = section.x_of_faces(ends[0] + (ends[1] - ends[0]) * share)
         total += (high - low) * np.array([weight @ term for term in _terms(z, *faces)])
     return Moments(*total.tolist())
 
@@ -325,6 +325,6 @@ def behind(section: Section, slope: float, height: float) -> Moments:
         if low < high <= height:
             share, weight = np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6
             z = low + (high - low) * share
-            inner, _ = section.across(ends[0] + (ends[1] - ends[0]) * share)
+            inner, _ = section.x_of_faces(ends[0] + (ends[1] - ends[0]) * share)
             total += (high - low) * np.array([weight @ term for term in _terms(z, -half - slope * z, inner)])
     return Moments(*total.tolist())

@@ -302,7 +302,7 @@ class Runner:
                     try:
                         flying[submit([(job.task, job.history) for job in jobs])] = jobs
                     except (PickleError, AttributeError, TypeError) as error:  # what pickle raises
-                        again.extend(self.left(jobs, error))
+                        again.extend(self.remaining_jobs(jobs, error))
                 if not flying:
                     return
                 done = wait(flying, return_when=FIRST_COMPLETED).done
@@ -313,7 +313,7 @@ class Runner:
                     except BrokenExecutor:
                         raise
                     except Exception as error:
-                        again.extend(self.left(jobs, error))
+                        again.extend(self.remaining_jobs(jobs, error))
                     else:
                         self.write(jobs[: len(rows)], rows)
                         again.extend(jobs[len(rows) :])
@@ -336,7 +336,7 @@ class Runner:
             return 1
         return min(max(int(CHUNK_SECONDS * finished / max(self.seconds, 1e-9)), 1), 64)
 
-    def left(self, jobs: Sequence[Job], error: Exception) -> Sequence[Job]:
+    def remaining_jobs(self, jobs: Sequence[Job], error: Exception) -> Sequence[Job]:
         """The jobs of a chunk without rows that are to be tried again, each alone. Others get their rows."""
         for job in jobs:
             for path in job.history.parent.glob(f"{job.history.name}.*.partial*") if job.history is not None else ():

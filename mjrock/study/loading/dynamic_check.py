@@ -90,7 +90,7 @@ class DynamicCheck:
     @property
     def judged(self) -> str:
         """Of masonry, what is displaced and which way, in words; empty of a wall."""
-        return f"the centroid of {named(self.moving)} along {spelt_way(np.array(self.way))}" if self.moving else ""
+        return f"the centroid of {named(self.moving)} along {direction_text(np.array(self.way))}" if self.moving else ""
 
     @property
     def share(self) -> float:
@@ -263,14 +263,14 @@ def dynamic_check(
     else:
         centroid = MovingCentroid.from_curve(curve)
         d_0, maxima = centroid.d_0, [centroid.largest(one) for one in _masonry_runs(given, store, histories)]
-        centroid.warn_of_weaker_way()
+        centroid.warn_of_weaker_direction()
     found = tuple(
         RunMaximum(motion.name, *signal, run.solver, d)
         for motion, signal, run, d in zip(motions, signals_of(cases), given, maxima, strict=True)
     )
     impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
     known = tuple(e for e in impacts if not math.isnan(e))
-    moved = {} if curve is None else {"moving": centroid.blocks, "way": tuple(centroid.way.tolist())}
+    moved = {} if curve is None else {"moving": centroid.blocks, "way": tuple(centroid.direction.tolist())}
     check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0], **moved)
     if check.lacking:
         warn_of(f"{rule.clause or code.name} asks for more: {'; '.join(check.lacking)}", Implausible)
@@ -295,9 +295,9 @@ def displaced(wall: Block, rotation: float) -> float:
     return math.inf if math.isinf(rotation) else float(wall.pose([rotation])[0, 0])
 
 
-def spelt_way(way: Array) -> str:
+def direction_text(direction: Array) -> str:
     """A direction as text, (1, 0)."""
-    return f"({', '.join(f'{part + 0.0:.3g}' for part in way.tolist())})"
+    return f"({', '.join(f'{part + 0.0:.3g}' for part in direction.tolist())})"
 
 
 class MovingCentroid(NamedTuple):
@@ -305,7 +305,7 @@ class MovingCentroid(NamedTuple):
 
     masonry: Masonry
     blocks: tuple[str, ...]
-    way: Array
+    direction: Array
     d_0: float
 
     @classmethod
@@ -318,26 +318,27 @@ class MovingCentroid(NamedTuple):
                     f"curve = {curve!r} ends where something is borne; give it up to where nothing is, or take the "
                     "push of masonry that slides"
                 )
-            return cls(found.masonry, found.part.names, found.part.way, float(found.displacement[-1]))
+            return cls(found.masonry, found.part.names, found.part.direction, float(found.displacement[-1]))
         masonry = cast(MasonryCase, curve.answer.case).masonry
         return cls(masonry, tuple(masonry.names[i] for i in masonry.free), curve.way, curve.d_0)
 
-    def warn_of_weaker_way(self) -> None:
+    def warn_of_weaker_direction(self) -> None:
         """Warn of masonry that bears less the other way on its own weight."""
-        plan = self.way[:2] if self.masonry.in_space else float(self.way[0])
+        plan = self.direction[:2] if self.masonry.in_space else float(self.direction[0])
         with contextlib.suppress(ValueError):  # it stands by its effects alone
-            along, back = (collapse_multiplier(self.masonry, way).multiplier for way in (plan, -plan))
+            along, back = (collapse_multiplier(self.masonry, sense).multiplier for sense in (plan, -plan))
             if back < (1 - WEAKER) * along:
                 warn_of(
-                    f"curve goes along {spelt_way(self.way)}, where the masonry bears {along:.4g} g on its own weight; "
-                    f"along {spelt_way(-self.way)} it bears {back:.4g} g: check that way too, with a curve along it",
+                    f"curve goes along {direction_text(self.direction)}, where the masonry bears {along:.4g} g on its "
+                    f"own weight; along {direction_text(-self.direction)} it bears {back:.4g} g: check that way too, "
+                    "with a curve along it",
                     Implausible,
                 )
 
     def largest(self, moved: MasonryRun) -> float:
         """Its largest displacement in a run [m], infinite where a block fell."""
         case, pose, fell = moved
-        return math.inf if fell else max(float(of_centroid(case, pose, self.way, self.blocks).max()), 0.0)
+        return math.inf if fell else max(float(of_centroid(case, pose, self.direction, self.blocks).max()), 0.0)
 
 
 class MasonryRun(NamedTuple):

@@ -223,7 +223,7 @@ def overturned(case: Case, direction: object, loads: object) -> Collapse:
     if found is None:
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
     if not case.one_sided:
-        _warn_of_other_way(case, forces, found.factor)
+        _warn_of_other_direction(case, forces, found.factor)
     acting: dict[str, Any] = {"loads": grown, "effects": case.effects, "case": case}
     if found.factor == math.inf:
         return Collapse(math.inf, np.array([sense, 0.0]), (), np.zeros((1, 3)), **acting)
@@ -254,7 +254,7 @@ def _overturning(case: Case, forces: Sequence[tuple[float, float, float, float]]
     return min(found, default=_Overturning(math.inf))
 
 
-def _warn_of_other_way(case: Case, forces: Sequence[tuple[float, float, float, float]], factor: float) -> None:
+def _warn_of_other_direction(case: Case, forces: Sequence[tuple[float, float, float, float]], factor: float) -> None:
     """Warn where horizontal forces overturn a wall that is free both ways at a lower factor when they push the other
     way."""
     other = _overturning(case, [(x, z, -across, down) for x, z, across, down in forces])

@@ -23,7 +23,7 @@ class MovingPart(NamedTuple):
         weight: of each block and then of each added mass [N], shape (k,).
         block: numbers of their blocks, shape (k,).
         at: where they are at rest [m], shape (k, d).
-        way: unit vector of the horizontal force, shape (d,).
+        direction: unit vector of the horizontal force, shape (d,).
         sway: virtual displacement of each along it, over that of their common centroid [-], shape (k,).
     """
 
@@ -31,7 +31,7 @@ class MovingPart(NamedTuple):
     weight: Array
     block: Integers
     at: Array
-    way: Array
+    direction: Array
     sway: Array
 
     @classmethod
@@ -57,12 +57,12 @@ class MovingPart(NamedTuple):
     def displacement(self, masonry: Masonry, pose: Array) -> Array:
         """How far its centroid has gone along the force in poses of the free blocks [m], shape (n,)."""
         places = np.array([Moves.from_pose(masonry, one).at(self.block, self.at) for one in pose])
-        return np.asarray(((places - self.at) @ self.way) @ self.weight / self.weight.sum())
+        return np.asarray(((places - self.at) @ self.direction) @ self.weight / self.weight.sum())
 
 
 def multiplier_of(found: Collapse, masonry: Masonry, effects: tuple[Effect, ...]) -> float:
     """The multiplier of a mechanism without its ties, by virtual work of what is constant and of what grows [-]."""
-    velocity, way = found.motion.ravel(), found.direction
+    velocity, direction = found.motion.ravel(), found.direction
     constant = weight_of(masonry) + applied(masonry, effects).ravel()
-    grown = pushed(masonry, way) + inertia_of_added_masses(masonry, effects, way)
+    grown = pushed(masonry, direction) + inertia_of_added_masses(masonry, effects, direction)
     return float(-(constant @ velocity) / (grown.ravel() @ velocity))

@@ -36,7 +36,7 @@ from ...quantities import (
     within_ranges,
 )
 from ...result.response import Response
-from ...theory.impact import as_one
+from ...theory.impact import rigid_rocking
 from .match import BASE_BOUNDS, SIDE_BOUNDS, Closest, GivenWall, Match, highest_branch
 
 STIFF_AS_THEORY = 16.0
@@ -223,7 +223,7 @@ def matched_masonry(
     amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
     accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
     pile = RigidStack.from_masonry(masonry)
-    e = as_one(pile) if e is None else e
+    e = rigid_rocking(pile) if e is None else e
     if pile.sides:
         e.require_rebound()
     k_n, points = (float(column[pile.base]) for column in (masonry.table.k_n, masonry.table.points))

@@ -151,7 +151,7 @@ def _standing(
     parts, (x, z) = [], at
     for (low, high), thickness in block.section.slabs(between):
         if between[0] <= low < high <= between[1]:
-            inner, outer = (x + face for face in block.section.across(thickness))
+            inner, outer = (x + face for face in block.section.x_of_faces(thickness))
             corners = [(inner[0], z + low), (outer[0], z + low), (outer[1], z + high), (inner[1], z + high)]
             parts.append(Polygon(corners, block.density, block.length))
     return Compound(parts, fixed, name) if len(parts) > 1 else replace(parts[0], fixed=fixed, name=name)
