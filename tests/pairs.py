@@ -40,10 +40,10 @@ SCENES = {
 """Text, geoms, contact points, and mass that a contact point stops."""
 
 
-def made_for(text, geom1, geom2, **asked):
+def made_for(text, geom1, geom2, **requested):
     """The contact, and a compiled model that has it and nothing that spoils it."""
     spec = mujoco.MjSpec.from_string(text)
-    contact = mr.contact_for(spec, geom1, geom2, **{"k": 1e6, "contacts": 1} | asked)
+    contact = mr.contact_for(spec, geom1, geom2, **{"k": 1e6, "contacts": 1} | requested)
     contact.apply(spec)
     model = spec.compile()
     assert contact.caveats(model) == ()

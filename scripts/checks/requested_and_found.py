@@ -21,7 +21,7 @@ import numpy as np
 import mjrock as mr
 from scripts.shared import cli
 
-ASKED = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.95)
+REQUESTED = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.95)
 QUICK = (0.1, 0.5)
 STEP = 2e-5
 FREQUENCY = 500.0
@@ -84,12 +84,12 @@ class Landing:
     def found(self, e: float) -> tuple[float, str]:
         """The restitution that MuJoCo gives for one that is asked, and what was warned of."""
         spec = mujoco.MjSpec.from_string(self.text())
-        asked = {"friction": self.friction, "speed": self.speed if self.gravity else None, **self.pose}
+        options = {"friction": self.friction, "speed": self.speed if self.gravity else None, **self.pose}
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            mass = mr.contact_for(spec, "foot", "floor", k=1e5, xi=0.1, **asked).mass
+            mass = mr.contact_for(spec, "foot", "floor", k=1e5, xi=0.1, **options).mass
             caught.clear()
-            contact = mr.contact_for(spec, "foot", "floor", k=mass * self.frequency**2, restitution=e, **asked)
+            contact = mr.contact_for(spec, "foot", "floor", k=mass * self.frequency**2, restitution=e, **options)
         contact.apply(spec)
         model = spec.compile()
         return self.rebound(model, contact), "; ".join(str(warning.message) for warning in caught)
@@ -195,19 +195,19 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Let everything land, and print the table."""
     args = cli.parser(__doc__, "requested_and_found").parse_args(argv)
     out = cli.folder(args.out)
-    asked = QUICK if args.quick else ASKED
+    requested = QUICK if args.quick else REQUESTED
     names = FEW if args.quick else tuple(LANDINGS)
     notes: dict[str, str] = {}
     rows, values = [], []
     for name in names:
-        results = [LANDINGS[name].found(e) for e in asked]
-        worst = max(abs(found - e) for e, (found, _) in zip(asked, results, strict=True))
+        results = [LANDINGS[name].found(e) for e in requested]
+        worst = max(abs(found - e) for e, (found, _) in zip(requested, results, strict=True))
         warned = next((sentences for _, sentences in results if sentences), "")
         notes |= {name: warned} if warned else {}
         verdict = "right" if worst <= RIGHT else "warned of" if warned else "WRONG"
         rows.append([name, *(f"{found:.3f}" for found, _ in results), f"{worst:.3f}", verdict])
-        values += [[name, e, found, sentences] for e, (found, sentences) in zip(asked, results, strict=True)]
-    text = cli.table(["e asked", *(f"{e:g}" for e in asked), "worst", ""], rows)
+        values += [[name, e, found, sentences] for e, (found, sentences) in zip(requested, results, strict=True)]
+    text = cli.table(["e asked", *(f"{e:g}" for e in requested), "worst", ""], rows)
     text += "".join(f"\n\n{name}: {sentences}" for name, sentences in notes.items())
     cli.report(out / "requested_and_found", text, ["landing", "asked", "found", "warning"], values)
 

@@ -138,8 +138,8 @@ def draw_wall(ax: Axes, frictions: Array, found: dict[tuple[bool, float], list[f
     for (coulomb, accuracy), values in found.items():
         if not coulomb or accuracy == finest:
             ax.plot(frictions, values, marker="o" if coulomb else "s", markersize=3.5, **LINES[coulomb])
-            said = "Coulomb's law,\nall accuracies" if coulomb else f"accuracy {accuracy:g}"
-            beside(ax, (frictions[-1], values[-1]), said, LINES[coulomb]["color"], (8, 0))
+            legend = "Coulomb's law,\nall accuracies" if coulomb else f"accuracy {accuracy:g}"
+            beside(ax, (frictions[-1], values[-1]), legend, LINES[coulomb]["color"], (8, 0))
     ax.text(0.0, 0.25, "MuJoCo's own friction", color=LINES[False]["color"], fontsize=8)
     ax.set_xlabel("coefficient of friction of the side [-]")
     ax.set_ylabel(r"$|e|$ of the first rebound [-]")
@@ -151,8 +151,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Measure, draw and print."""
     args = cli.parser(__doc__, "sliding").parse_args(argv)
     out = cli.folder(args.out)
-    for said in ("contacts that slide", "with a fixed step of"):
-        warnings.filterwarnings("ignore", said, UserWarning)
+    for legend in ("contacts that slide", "with a fixed step of"):
+        warnings.filterwarnings("ignore", legend, UserWarning)
     accuracies = ACCURACIES[:1] if args.quick else ACCURACIES
     frictions = np.linspace(0, 0.8, 3 if args.quick else 9)
     found = {

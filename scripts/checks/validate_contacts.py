@@ -134,8 +134,8 @@ def amplitude_table(rows: Sequence[Row]) -> str:
             own = [r for r in rows if (r["points"], r["amplitude"]) == (points, phi) and r["size_1"] > 1.5]
             if not own:
                 continue
-            told = [shares(r["e_1"] for r in own if r["told"] is way) for way in (False, True)]
-            lines.append([points, f"{phi:g}", len(own) // 2, *told[0], *told[1]])
+            informed = [shares(r["e_1"] for r in own if r["told"] is way) for way in (False, True)]
+            lines.append([points, f"{phi:g}", len(own) // 2, *informed[0], *informed[1]])
     header = ["lines", "theta_0/alpha", "walls", "default amplitude: median", "95 %", "amplitude given: median", "95 %"]
     return cli.table(header, lines)
 
@@ -206,7 +206,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     layouts, frictions = ((2,), FRICTIONS[1:3]) if args.quick else ((2, 16), FRICTIONS)
     released = [replace(one, amplitude=phi) for one in ones for phi in AMPLITUDES]
     rebounds = everywhere("rebounds", [(by_law, (one, 2, 0.5), {}) for one in released])
-    told = everywhere(
+    informed = everywhere(
         "amplitude",
         [
             (by_law, (replace(one, amplitude=phi), points, phi if way else 0.5),
@@ -225,7 +225,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     bed = everywhere("beds", [(by_law, (one, 16, one.amplitude), {}) for one in beds])
     tables = {
         "rebounds": (rebounds, "CALIBRATED, every rebound by its size in theory", rebound_table),
-        "amplitude": (told, "First rebound, rebounds of more than 1.5 times the uplift rotation", amplitude_table),
+        "amplitude": (
+            informed,
+            "First rebound, rebounds of more than 1.5 times the uplift rotation",
+            amplitude_table,
+        ),
         "as theory": (theory, "Contacts as theory has them (`as_theory`)", theory_table),
         "friction": (friction, "Contacts matched to friction (`matched_contacts`)", friction_table),
         "beds": (bed, "Beds of 16 lines inside the domain of CALIBRATED_BED", bed_table),

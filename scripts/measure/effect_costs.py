@@ -63,7 +63,7 @@ class Facade:
     vertical: bool = False
     shaken: bool = True
 
-    def asked(self, motion: mr.GroundMotion, up: mr.GroundMotion, pga: float) -> tuple[mr.Case, mr.Contacts]:
+    def request(self, motion: mr.GroundMotion, up: mr.GroundMotion, pga: float) -> tuple[mr.Case, mr.Contacts]:
         """The case under a motion scaled to a peak in g, and contacts with the damping of the calibrated law."""
         wall = mr.Block.from_size(**SIZE, **self.wall)
         theta0 = 0.0 if self.shaken else 0.5 * wall.alpha
@@ -116,7 +116,7 @@ def solved(facade: Facade, motions: Pair, pga: float) -> mr.Response:
     """A run of MuJoCo."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # of sliding, which is what is asked for
-        return mr.simulate(*facade.asked(*motions, pga), output_step=0.01)
+        return mr.simulate(*facade.request(*motions, pga), output_step=0.01)
 
 
 def peak(facade: Facade, motions: Pair, pga: float) -> float:
@@ -142,12 +142,12 @@ def overturning(falls: Callable[[float], bool]) -> float:
 def timed(studied: Mapping[str, Facade], motions: Pair, pga: float, rounds: int) -> dict[str, tuple[float, float]]:
     """Time and steps per simulated second over those of the bare façade, medians of interleaved rounds."""
     ratios: dict[str, list[tuple[float, float]]] = {}
-    asked = {"no ground motion": Facade(shaken=False), **studied}
-    for facade in asked.values():
+    facades = {"no ground motion": Facade(shaken=False), **studied}
+    for facade in facades.values():
         solved(facade, motions, pga)  # text and compilation
     for _ in tqdm(range(rounds), desc="rounds", disable=None, leave=False):
         spent = {}
-        for name, facade in asked.items():
+        for name, facade in facades.items():
             begun = time.process_time()
             found = solved(facade, motions, pga)
             spent[name] = (time.process_time() - begun) / found.t[-1], found.stats["steps"] / found.t[-1]
@@ -224,7 +224,7 @@ def vertical_in_theory(count: int) -> list[float]:
         for motion in mr.GroundMotion.synthetic(3.0, 15.0, seed=seed).polarities:
 
             def falls(pga: float, vertical: bool, motion: mr.GroundMotion = motion, up: mr.GroundMotion = up) -> bool:
-                case, _ = Facade(vertical=vertical).asked(motion, up, pga)
+                case, _ = Facade(vertical=vertical).request(motion, up, pga)
                 found = mr.solve_analytical(case, mr.Restitution.from_geometry(BARE), rtol=1e-8, output_step=0.05)
                 return found.outcome is mr.Outcome.OVERTURNED
 

@@ -91,8 +91,8 @@ def main(argv: Sequence[str] | None = None) -> None:
             verdicts, sketches = zip(*found, strict=True)
             usual = statistics.median(verdicts), max(verdicts), statistics.median(sketches)
             rows.append([name, *(f"{one:.2f}" for one in usual)])
-    said = ", ".join(f"{name} after {one:.1f} s" for name, one in starts.items())
-    cli.report(out / "form_times", f"from the command: {said}\n\n{cli.table(HEADER, rows)}", HEADER, rows)
+    summary = ", ".join(f"{name} after {one:.1f} s" for name, one in starts.items())
+    cli.report(out / "form_times", f"from the command: {summary}\n\n{cli.table(HEADER, rows)}", HEADER, rows)
 
 
 if __name__ == "__main__":

@@ -273,9 +273,9 @@ def drawn(points: Sequence[Point], scatters: Mapping[int, float]) -> Figure:
             worst = max(worst, one.peak)
             shown.append((f"{count} blocks", one.method, one.seconds, worst))
     mujoco = plotting.STYLES["MuJoCo"]
-    told = {"fitted steps": mujoco | {"label": "MuJoCo, fitted steps"}}
-    told["fixed steps"] = mujoco | {"label": "MuJoCo, fixed steps", "linestyle": "--", "linewidth": 1.0}
-    return accuracy.work_precision(shown, told, "largest error of a peak rotation [-]")
+    looks = {"fitted steps": mujoco | {"label": "MuJoCo, fitted steps"}}
+    looks["fixed steps"] = mujoco | {"label": "MuJoCo, fixed steps", "linestyle": "--", "linewidth": 1.0}
+    return accuracy.work_precision(shown, looks, "largest error of a peak rotation [-]")
 
 
 def main(argv: Sequence[str] | None = None) -> None:

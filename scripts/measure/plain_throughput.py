@@ -97,12 +97,12 @@ def main(argv: Sequence[str] | None = None) -> None:
         model = mujoco.MjModel.from_xml_string(text)
         starts = starts_of(model, count)
         alone, took = timed(one_by_one, model, starts, steps)
-        said = [f"{steps * count / took:,.0f} one after the other"]
+        rates = [f"{steps * count / took:,.0f} one after the other"]
         for threads in sorted({1, cores}):
             last, took = timed(at_once, model, starts, steps, threads)
             same = "the same to the bit" if np.array_equal(last, alone) else f"within {np.abs(last - alone).max():.2g}"
-            said.append(f"{steps * count / took:,.0f} by rollout on {threads} core{'s' * (threads > 1)} ({same})")
-        lines.append(f"{name}, steps a second: " + ", ".join(said))
+            rates.append(f"{steps * count / took:,.0f} by rollout on {threads} core{'s' * (threads > 1)} ({same})")
+        lines.append(f"{name}, steps a second: " + ", ".join(rates))
     lines += [f"{package}: {elsewhere(package, wall_text())}" for package in ("mujoco.mjx", "mujoco_warp")]
     cli.report(out / "plain_throughput", "\n".join(lines))
 

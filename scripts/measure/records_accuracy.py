@@ -193,9 +193,9 @@ def drawn_points(rows: Sequence[Row]) -> list[tuple[str, str, float, float]]:
 
 def picture(points: Sequence[tuple[str, str, float, float]]) -> Figure:
     """Errors of the peaks against time, by solver."""
-    told = {"MuJoCo, fitted steps": plotting.STYLES["MuJoCo"], "explicit steps": plotting.STYLES["explicit"]}
-    told["SciPy"] = plotting.STYLES["compliant"]
-    return accuracy.work_precision(points, told, "peak error of nine of ten runs [-]", "processor time of a run [s]")
+    looks = {"MuJoCo, fitted steps": plotting.STYLES["MuJoCo"], "explicit steps": plotting.STYLES["explicit"]}
+    looks["SciPy"] = plotting.STYLES["compliant"]
+    return accuracy.work_precision(points, looks, "peak error of nine of ten runs [-]", "processor time of a run [s]")
 
 
 def main(argv: Sequence[str] | None = None) -> None:

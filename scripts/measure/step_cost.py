@@ -84,12 +84,12 @@ WAITED = ["scene", "blocks", "lines", "step [us]", "timed [s]", "took [s]", "the
 
 def waited(name: str, whole: bool = False) -> list[object]:
     """A row of the table of large scenes: blocks, lines, step, what is timed, and how long the whole would take."""
-    case, asked = long_case(name, whole)
+    case, requested = long_case(name, whole)
     lines = len(setup_of(case, None, None).system.lines)
-    answer = mr.solve_explicit(case, output_step=0.01 if asked > 1 else 1e-3, threads=1)
+    answer = mr.solve_explicit(case, output_step=0.01 if requested > 1 else 1e-3, threads=1)
     spent, stats = answer.stats["stepping_processor_time"], answer.stats
     setting_up = stats["processor_time"] - spent
-    whole = setting_up + spent * asked / case.duration
+    whole = setting_up + spent * requested / case.duration
     blocks = len(answer.of_masonry.masonry.blocks)
     return [name, blocks, lines, f"{stats['timestep'] * 1e6:.1f}", f"{case.duration:g}", f"{spent:.1f}", f"{whole:.0f}"]
 

@@ -42,7 +42,7 @@ from scripts.shared.paper import FIGURE_3, K_N
 
 Solve = Callable[[mr.Case, mr.Contacts, bool], tuple[Response, float]]
 """Solves a case, with the energy ledger where asked and available; returns the response and the wall time [s]."""
-TOLD = {
+LOOKS = {
     "fitted steps": plotting.STYLES["MuJoCo"] | {"label": "MuJoCo, fitted steps"},
     "fixed, beta 1/4": plotting.STYLES["MuJoCo"] | {"label": "MuJoCo, fixed steps", "linestyle": "--"},
     "contact law, SciPy": plotting.STYLES["compliant"],
@@ -427,7 +427,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         for p in points
     ]
     plotting.save(
-        accuracy.work_precision([(p.case, p.method, p.seconds, p.e_error) for p in points if p.e_error < 1], TOLD),
+        accuracy.work_precision([(p.case, p.method, p.seconds, p.e_error) for p in points if p.e_error < 1], LOOKS),
         out / "work_precision.png",
     )
     lines_out = [

@@ -25,7 +25,7 @@ from scripts.shared import cli
 MASSES = (0.5, 1.0, 2.0, 4.0)
 K, E, RADIUS, DROP, STEP, DURATION = 2e4, 0.7, 0.05, 0.3, 2e-4, 6.0
 LOOKS = ({"color": GREEN, "linestyle": "--", "linewidth": 1.4}, {"color": ORANGE, "linewidth": 1.8})
-DEFAULT, ASKED = "MuJoCo's default", f"k = {K:g} N/m, e = {E:g}"
+DEFAULT, REQUESTED = "MuJoCo's default", f"k = {K:g} N/m, e = {E:g}"
 
 
 def spec() -> mujoco.MjSpec:
@@ -57,7 +57,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         warnings.simplefilter("ignore", ContactWarning)  # of the shares of e that gravity takes
         contacts_for(made, {("ball*", "floor"): {"k": K, "restitution": E}}).apply(made)
     duration = 3.0 if args.quick else DURATION
-    runs = {DEFAULT: heights(spec().compile(), duration), ASKED: heights(made.compile(), duration)}
+    runs = {DEFAULT: heights(spec().compile(), duration), REQUESTED: heights(made.compile(), duration)}
     rows = []
     for name, z in runs.items():
         first = int(np.argmax(z[:, 0] < 0))

@@ -23,8 +23,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     wall = MODELS / "figure3_one_sided" / "scene.xml"
     options.add_argument("model", type=Path, nargs="?", default=wall, help="MJCF or URDF file")
     args, others = options.parse_known_args(argv)
-    asked = [str(args.model), "--all", *(["--pairs"] if args.quick else []), *others]
-    cli.report(cli.folder(args.out) / "inspect_contacts", command.answer(asked).text)
+    arguments = [str(args.model), "--all", *(["--pairs"] if args.quick else []), *others]
+    cli.report(cli.folder(args.out) / "inspect_contacts", command.answer(arguments).text)
 
 
 if __name__ == "__main__":

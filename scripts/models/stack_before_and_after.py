@@ -23,7 +23,7 @@ from mjrock.quantities import Array
 from mjrock.result.bodies import BodyMotion
 from mjrock.scene.tints import TINTS, distinct_tints
 from scripts.shared import cli
-from scripts.shared.films import FPS, folder, told
+from scripts.shared.films import FPS, folder, summary_of
 from scripts.shared.films import films as written
 
 HALF = np.array([0.15, 0.1, 0.05])
@@ -113,7 +113,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     colours = np.array([TINTS[tint] for tint in distinct_tints(len(stones), ())])
     bodies = Bodies(BodyMotion(case, films[0][0], poses), colours, np.array([(-0.9, 0.9), (-0.2, 0.55)]))
     labels = [f"{name}: sinks by {depth:.3g} mm" for name, depth in zip(NAMES, sunk[:, -1], strict=True)]
-    lines += [told(written(lambda path: drawn(bodies, labels, path), out / "stack_before_and_after", DURATION))]
+    lines += [summary_of(written(lambda path: drawn(bodies, labels, path), out / "stack_before_and_after", DURATION))]
     cli.report(out / "stack_before_and_after", "\n".join(lines))
 
 

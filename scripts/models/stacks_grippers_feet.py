@@ -54,8 +54,8 @@ def stack(seconds: float) -> list[list[str]]:
     for own in (True, False):
         spec = mujoco.MjSpec.from_string(model_text(bodies, 5e-4))
         if own:
-            asked = {"k": k / 4, "xi": 0.5, "friction": 0.6}
-            mr.contacts_for(spec, {("box*", "floor"): asked, ("box*", "box*"): asked}).apply(spec)
+            parameters = {"k": k / 4, "xi": 0.5, "friction": 0.6}
+            mr.contacts_for(spec, {("box*", "floor"): parameters, ("box*", "box*"): parameters}).apply(spec)
         model = spec.compile()
         data = mujoco.MjData(model)
         mujoco.mj_step(model, data, int(seconds / 5e-4))
@@ -78,10 +78,10 @@ def iterations(seconds: float) -> list[list[str]]:
     for count, k in STACKS:
         bodies = "".join(BOX.format(z=0.05 + 0.1 * i, i=i) for i in range(count))
         spec = mujoco.MjSpec.from_string(model_text(bodies, 5e-4))
-        asked = {"k": k, "xi": 0.5, "friction": 0.6}
-        pairs: dict[tuple[str | int, str | int], dict[str, float]] = {("box*", "floor"): asked}
+        parameters = {"k": k, "xi": 0.5, "friction": 0.6}
+        pairs: dict[tuple[str | int, str | int], dict[str, float]] = {("box*", "floor"): parameters}
         if count > 1:
-            pairs["box*", "box*"] = asked
+            pairs["box*", "box*"] = parameters
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", mr.ContactWarning)  # of a step that is long for the stiffest
             mr.contacts_for(spec, pairs).apply(spec)
@@ -114,10 +114,10 @@ def creep(seconds: float) -> list[list[str]]:
     ):
         spec = mujoco.MjSpec.from_string(model_text(GRIPPER, 1e-3, options))
         if own:
-            asked = {"restitution": 0.1, "friction": 0.7}  # the stiffest that the step resolves
+            parameters = {"restitution": 0.1, "friction": 0.7}  # the stiffest that the step resolves
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # gravity: a grip does not bounce
-                pads = mr.contacts_for(spec, {("left", "held"): asked, ("right", "held"): asked})
+                pads = mr.contacts_for(spec, {("left", "held"): parameters, ("right", "held"): parameters})
                 pads.apply(spec)
             held = pads.contacts[0].k
         model = spec.compile()

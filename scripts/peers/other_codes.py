@@ -361,8 +361,8 @@ def drawn_choices(least: Mapping[tuple[str, float], float], rows: Sequence[Mappi
     second.tick_params(labelleft=False)
     for ax, choice in zip((first, second), (AS_PUBLISHED, DAMPED), strict=True):
         draw_map(ax, [row for row in rows if row["choice"] == choice.name], choice.name)
-    (dots, said), (marks, codes) = left.get_legend_handles_labels(), first.get_legend_handles_labels()
-    legend_below(figure, [*dots, *marks], [*said, *codes], ncols=7)
+    (dots, code_labels), (marks, codes) = left.get_legend_handles_labels(), first.get_legend_handles_labels()
+    legend_below(figure, [*dots, *marks], [*code_labels, *codes], ncols=7)
     return figure
 
 

@@ -88,7 +88,7 @@ SETUPS = (
     Setup("Siconos, restitution typed in", "|e| at the stop", SICONOS, "restitution", (5e-3, *SHORT), False),
 )
 
-TOLD = {
+LABELS = {
     "mjrock": "mjrock",
     "mjrock, as_theory": "mjrock, contacts as of theory",
     "MuJoCo, direct, d = 1e-4, pairs": "stock MuJoCo, stiffness and damping by hand",
@@ -205,8 +205,8 @@ def theirs(problem: Problem, setup: Setup, h: float) -> Point:
         except subprocess.TimeoutExpired:
             return replace(nothing, note=f"stopped after {LIMIT:g} s")
         except subprocess.CalledProcessError as error:
-            said = [line for line in error.stderr.splitlines() if "Error: " in line]
-            return replace(nothing, note=(said or ["failed"])[-1].split("Error: ")[-1])
+            errors = [line for line in error.stderr.splitlines() if "Error: " in line]
+            return replace(nothing, note=(errors or ["failed"])[-1].split("Error: ")[-1])
         with np.load(task.file) as answers:
             pairs = enumerate(problem.cases)
             found = [problem.restitution(case, answers[f"motion_{i}"]) for i, case in pairs]
@@ -228,12 +228,12 @@ def env(code: str) -> dict[str, str]:
 
 def missing() -> dict[str, str]:
     """The peers that are not installed, with the line that says so."""
-    said = {}
+    missing_codes = {}
     for code, name in NEEDS.items():
         if not (found_by_debian(name) if code in DEBIAN else importlib.util.find_spec(name) is not None):
             how = f"apt-get install {DEBIAN[code]} gcc" if code in DEBIAN else "pip install pybullet openseespy"
-            said[code] = f"{name} is not installed, it needs {how}"
-    return said
+            missing_codes[code] = f"{name} is not installed, it needs {how}"
+    return missing_codes
 
 
 def keep_peers(table: Path, absent: dict[str, str]) -> None:
@@ -333,7 +333,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         for p in found
     ]
     drawn = [(p.case, p.setup.label, p.seconds, p.law, p.theory) for p in found if math.isfinite(p.theory)]
-    plotting.save(accuracy.peers(drawn, TOLD), out / "peers.png")
+    plotting.save(accuracy.peers(drawn, LABELS), out / "peers.png")
     lines = [summary(problem.label, found) for problem in problems]
     lines.append(
         "\n".join([f"mjrock {mr.__version__}, accuracy 1e-3 is its default", *versions(absent), *absent.values()])
@@ -350,8 +350,8 @@ def version(code: str) -> str:
     """The version of a peer."""
     if code not in DEBIAN:
         return importlib.metadata.version(NEEDS[code])
-    ask = ["dpkg-query", "-W", "-f", "${Version}", DEBIAN[code]]
-    return subprocess.run(ask, capture_output=True, text=True, check=True).stdout
+    query = ["dpkg-query", "-W", "-f", "${Version}", DEBIAN[code]]
+    return subprocess.run(query, capture_output=True, text=True, check=True).stdout
 
 
 if __name__ == "__main__":

@@ -54,19 +54,19 @@ def convergence(ax: Axes, steps: ArrayLike, errors: Mapping[str, ArrayLike], ord
 
 def work_precision(
     points: Sequence[tuple[str, str, float, float]],
-    told: Mapping[str, Look],
+    looks: Mapping[str, Look],
     error: str = "largest error of $e$ per rebound [-]",
     cost: str = "wall time [s]",
 ) -> Figure:
     """Error against time, a panel a case, with the Pareto front.
 
-    Points are (case, method, seconds, error). Methods of `told` have the label, colour and line that it gives them, and
-    all others are thin and grey.
+    Points are (case, method, seconds, error). Methods of `looks` have the label, colour and line that it gives them,
+    and all others are thin and grey.
     """
     cases, methods = list(dict.fromkeys(p[0] for p in points)), list(dict.fromkeys(p[1] for p in points))
     figure, axes = figure_of_panels(len(cases), min(2, len(cases)), (4.2, 3.4))
     for ax, case in zip(axes.flat, cases, strict=False):
-        _errors(ax, {m: sorted(p[2:] for p in points if p[:2] == (case, m)) for m in methods}, told)
+        _errors(ax, {m: sorted(p[2:] for p in points if p[:2] == (case, m)) for m in methods}, looks)
         ax.set_xlabel(cost)
         ax.set_title(case, fontsize=10)
     for ax in axes[:, 0]:
@@ -76,24 +76,24 @@ def work_precision(
     return figure
 
 
-def peers(points: Sequence[tuple[str, str, float, float, float]], told: Mapping[str, str]) -> Figure:
+def peers(points: Sequence[tuple[str, str, float, float, float]], highlighted: Mapping[str, str]) -> Figure:
     """Error of |e| against wall time in several codes: a column a case, the contact law above and theory below.
 
     Points are (case, setup, wall time over simulated time, error against the law or NaN, error against theory). A
-    setup is named "code, how". Those of `told` have the colour of their code and a word, and all others are grey. An
-    error of 1 is a rebound that never comes.
+    setup is named "code, how". Those of `highlighted` have the colour of their code and a label, and the others are
+    grey. An error of 1 is a rebound that never comes.
     """
     cases, setups = list(dict.fromkeys(p[0] for p in points)), list(dict.fromkeys(p[1] for p in points))
     codes = list(dict.fromkeys(setup.split(",")[0] for setup in setups))
     figure = Picture(figsize=(WIDEST, 7.2), layout="constrained")
     axes = figure.subplots(2, len(cases), squeeze=False, sharex=True, sharey="row")
-    for setup in sorted(setups, key=lambda one: one in told):
+    for setup in sorted(setups, key=lambda one: one in highlighted):
         style: Look = {"color": "0.75", "marker": ".", "linewidth": 0.7}
-        if setup in told:
+        if setup in highlighted:
             code = codes.index(setup.split(",")[0])
             dashes = "--" if setup == "mjrock, as_theory" else "-"
             style = {"color": CODES[code], "marker": "osD^v"[code], "linestyle": dashes, "linewidth": 1.5}
-            style |= {"label": told[setup], "markersize": 4, "zorder": 3}
+            style |= {"label": highlighted[setup], "markersize": 4, "zorder": 3}
         for column, case in zip(axes.T, cases, strict=True):
             rows = [point[2:] for point in points if point[:2] == (case, setup)]
             for ax, which in zip(column, (1, 2), strict=True):
@@ -117,12 +117,12 @@ def peers(points: Sequence[tuple[str, str, float, float, float]], told: Mapping[
     return figure
 
 
-def _errors(ax: Axes, lines: Mapping[str, Sequence[tuple[float, float]]], told: Mapping[str, Look]) -> None:
+def _errors(ax: Axes, lines: Mapping[str, Sequence[tuple[float, float]]], looks: Mapping[str, Look]) -> None:
     """Errors against a cost, a line a method, and the front that no method beats."""
     for method, line in lines.items():
-        if line and method not in told:
+        if line and method not in looks:
             ax.loglog(*np.transpose(line), marker=".", markersize=3, linewidth=0.6, color="0.7")
-    for i, (method, look) in enumerate(told.items()):
+    for i, (method, look) in enumerate(looks.items()):
         if lines.get(method):
             drawn: Look = {"marker": "os^Dv"[i % 5], "markersize": 4, "linewidth": 1.4, "linestyle": "-"} | look
             ax.loglog(*np.transpose(lines[method]), **drawn)

@@ -39,7 +39,7 @@ def films(draw: Callable[[Path], Path], stem: Path, poster: float) -> list[Path]
     return [film, other, still]
 
 
-def told(files: list[Path]) -> str:
+def summary_of(files: list[Path]) -> str:
     """Names and sizes of what was written, as a line of text."""
     return ", ".join(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB" for path in files)
 

@@ -95,7 +95,7 @@ def obtained(ax: Axes, samples: Mapping[str, tuple[ArrayLike, ArrayLike]]) -> Ax
 
     A wall that sticks to its side has none.
     """
-    wanted = np.concatenate([asked for asked, _ in samples.values()])
+    wanted = np.concatenate([requested for requested, _ in samples.values()])
     limits = wanted.min(), wanted.max()
     ax.plot(limits, limits, color="0.5", linewidth=0.8)
     looks = zip("x.s", (ORANGE, BLUE, GREEN), (3, 5, 4), strict=True)

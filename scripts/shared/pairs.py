@@ -39,9 +39,9 @@ def pairs(ax: Axes, values: ArrayLike, names: tuple[str, str], limits: tuple[flo
     limits = low / GUTTER, high * GUTTER
     ax.set(xlim=limits, ylim=limits, aspect="equal", xlabel=x, ylabel=y)
     alone = [int((fell[:, i] & ~fell[:, 1 - i]).sum()) for i in (0, 1)]
-    said = f"{len(given)} runs\noverturned\nin both {int(fell.all(axis=1).sum())}"
-    said += "".join(f"\n{name} alone {count}" for name, count in zip(names, alone, strict=True))
-    ax.text(0.86, 0.14, said, transform=ax.transAxes, fontsize=SMALL, ha="right", va="bottom")
+    text = f"{len(given)} runs\noverturned\nin both {int(fell.all(axis=1).sum())}"
+    text += "".join(f"\n{name} alone {count}" for name, count in zip(names, alone, strict=True))
+    ax.text(0.86, 0.14, text, transform=ax.transAxes, fontsize=SMALL, ha="right", va="bottom")
     ax.text(low / wide, np.sqrt(low * high), "at rest", rotation=90, fontsize=SMALL, ha="center", va="center")
     ax.text(np.sqrt(low * high), high * wide, "overturned", fontsize=SMALL, ha="center", va="center")
     return ax

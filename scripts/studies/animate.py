@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.shared.films import films, folder, told
+from scripts.shared.films import films, folder, summary_of
 from scripts.shared.paper import FIGURE_3, K_N
 
 SPEED = 0.5
@@ -41,12 +41,12 @@ def main(argv: Sequence[str] | None = None) -> None:
     wall, arch = (rocking(0.06), falling(0.06)) if args.quick else (rocking(1.4), falling(4.5))
     title = "One-sided rocking, 4.2 x 0.6 m, released at half of alpha"
     written = films(lambda path: plotting.animate(wall, path, speed=SPEED, title=title), out / "figure3", 0.0)
-    print(told(written))
+    print(summary_of(written))
     title = "An arch under a pulse"
     seen = [(-7.0, 11.0), (-1.3, 6.0)]  # m
     poster = 0.47 * float(arch.t[-1]) / SPEED
     draw = functools.partial(plotting.animate, arch, speed=SPEED, title=title, limits=seen)
-    print(told(films(draw, out / "arch", poster)))
+    print(summary_of(films(draw, out / "arch", poster)))
 
 
 if __name__ == "__main__":

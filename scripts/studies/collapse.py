@@ -181,8 +181,8 @@ def main(argv: Sequence[str] | None = None) -> None:
             rows.append(row(dict(ran)))
             cli.write_text(out / "collapse.csv", cli.csv_text(header, rows))  # an interrupted study keeps its rows
     speed, way = creep(*((0.4, 0.1) if args.quick else (8.0, REST)))
-    said = f"the heap of the wall moves at {1e3 * speed:.1e} mm/s after its fall; in {REST:g} s more"
-    text = f"{cli.table(header, rows)}\n\n{said} no block moves by more than {1e3 * way:.2g} mm"
+    summary = f"the heap of the wall moves at {1e3 * speed:.1e} mm/s after its fall; in {REST:g} s more"
+    text = f"{cli.table(header, rows)}\n\n{summary} no block moves by more than {1e3 * way:.2g} mm"
     cli.report(out / "collapse", text, header, rows)
 
 

@@ -314,9 +314,9 @@ def draw_record(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
 
 def draw_growth(ax: Axes, paths: Sequence[dict[str, Path]]) -> None:
     """How far apart two ways are over time, the median of the records."""
-    for (name, other), (said, look) in GROWTH.items():
+    for (name, other), (label, look) in GROWTH.items():
         difference = 1e3 * growth(paths, name, other)
-        ax.semilogy(SAMPLE * np.arange(len(difference)), difference, linewidth=1.2, label=said, **look)
+        ax.semilogy(SAMPLE * np.arange(len(difference)), difference, linewidth=1.2, label=label, **look)
     ax.axhline(1e3 * PARTED, color="0.5", linewidth=0.8, linestyle=":")
     ax.text(0.0, 1e3 * PARTED, "parted", fontsize=8, va="bottom")
     ax.set(xlabel="$t$ [s]", ylabel="difference of a rotation [mrad]", ylim=(1e-6, 1e3))

@@ -131,7 +131,7 @@ def studied(sides: str, name: str, motion: mr.GroundMotion, rung: float = RUNG) 
     return Found(sides, name, tuple(least), tuple(of(SHARE * min(least)) for of in models))
 
 
-def asked(motions: Sequence[mr.GroundMotion]) -> list[tuple[str, str, mr.GroundMotion]]:
+def requested(motions: Sequence[mr.GroundMotion]) -> list[tuple[str, str, mr.GroundMotion]]:
     """Sides, name and motion of every study: both polarities where the façade is one-sided, which is not symmetric."""
     names = [f"{number} {motion.name.split()[0]}" for number, motion in enumerate(motions, 1)]
     both = []
@@ -187,7 +187,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     args = options.parse_args(argv)
     out = cli.folder(args.out)
     motions = suite.motions(args, 5, quick=1)
-    studies = asked(motions)[1 if args.quick else 0 :]
+    studies = requested(motions)[1 if args.quick else 0 :]
     rung = RUNG**4 if args.quick else RUNG
     bar = tqdm(studies, desc="motions", disable=None, leave=False)
     found = [studied(sides, name, motion, rung) for sides, name, motion in bar]

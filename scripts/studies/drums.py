@@ -115,10 +115,10 @@ def drawn(frequencies: Sequence[float], least: NDArray[np.float64], theory: NDAr
         if column == (1, 2):
             continue  # it falls together with two drums
         ax.plot(frequencies, curve, marker=marker, markersize=4, linewidth=1.4, **look)
-        said = "1 and 2 drums" if column == (2, 2) else name(*column)
+        label = "1 and 2 drums" if column == (2, 2) else name(*column)
         at = min(NAMED.get(column, math.inf), frequencies[-1])
         place = at, float(np.interp(at, frequencies, curve))
-        beside(ax, place, said, look["color"], (-8 if column in NAMED else 8, 0))
+        beside(ax, place, label, look["color"], (-8 if column in NAMED else 8, 0))
     ax.text(frequencies[0], 1.7, "below $\\omega_p/p = 4$ all are alike,\nbut for joints of four lines", fontsize=8)
     ax.set_yscale("log")
     ax.set_xlim(0.3, frequencies[-1] + 0.1)

@@ -22,7 +22,7 @@ import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
 from scripts.shared.at_times import at_times
-from scripts.shared.films import films, folder, told
+from scripts.shared.films import films, folder, summary_of
 
 LENGTH, HEIGHT, DEPTH, UNIT = 3.2, 1.6, 1.2, (0.4, 0.2)
 WINDOWS = tuple((y, mr.Opening(width=0.4, height=0.6, sill=0.6)) for y in (-0.6, 0.6))
@@ -108,7 +108,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         f"{stats['steps']} steps of {1e6 * stats['timestep']:.3g} us: {stats['stepping_processor_time']:.3g} s, "
         f"{stats['stepping_processor_time'] / answer.t[-1]:.3g} s a simulated second, {each:.0f} ns a point and step; "
         f"before them {stats['processor_time'] - stats['stepping_processor_time']:.2g} s",
-        told(written),
+        summary_of(written),
         "",
         cli.table(header, rows),
     ]

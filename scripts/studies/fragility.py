@@ -45,14 +45,14 @@ def again(motions: Sequence[mr.GroundMotion], pga: float, fell: Sequence[bool]) 
         f"under records {STRONGER:g} stronger": stronger,
     }
     runs = [suite.analysis(FIGURE_3, suite.to_peak(motion, pga), "MuJoCo", k_n=K_N) for motion in motions]
-    said = []
+    sentences = []
     for name, solve in ways.items():
         bar = tqdm(runs, desc=name, disable=None, leave=False)
         ends = [solve(run.case, run.contacts).outcome is mr.Outcome.OVERTURNED for run in bar]
         others = sum(end != own for end, own in zip(ends, fell, strict=True))
-        said.append(f"{others} end otherwise {name}, where {np.mean(ends):.3f} overturn")
+        sentences.append(f"{others} end otherwise {name}, where {np.mean(ends):.3f} overturn")
     head = f"MuJoCo at {pga:g} g: {np.mean(fell):.3f} of {len(runs)} runs overturn"
-    return "; ".join([head, *said])
+    return "; ".join([head, *sentences])
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -96,8 +96,8 @@ def main(argv: Sequence[str] | None = None) -> None:
             )
     header = ["solver", "independent", "median PGA [g]", "90 % interval [g]", "dispersion [-]", "90 % interval [-]"]
     checked, count = int(np.abs(levels - CHECKED).argmin()), 2 if args.quick else len(motions)
-    said = again(motions[:count], float(levels[checked]), fell[1, :count, checked].tolist())
-    text = f"{cli.table(header, rows)}\n\n{said}"
+    sentences = again(motions[:count], float(levels[checked]), fell[1, :count, checked].tolist())
+    text = f"{cli.table(header, rows)}\n\n{sentences}"
     cells = [
         (f"{level:.4f}", *(f"{share:.4f}" for share in own))
         for level, own in zip(levels, fell.mean(axis=1).T, strict=True)

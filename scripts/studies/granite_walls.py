@@ -216,19 +216,19 @@ def main(argv: Sequence[str] | None = None) -> None:
         pushes[name] = found = curve_of(push)
         peak, top = test[:, 1].max(), found[:, 1].max()
         rises = [(at(test, place), at(found, place)) for place in (2.0, 6.0)]
-        told = [f"{a:.1f} / {b:.1f} ({b / a - 1:+.0%})" for a, b in rises]
+        changes = [f"{a:.1f} / {b:.1f} ({b / a - 1:+.0%})" for a, b in rises]
         share = found[-1, 1] / top
         rows.append(
-            [name, force, f"{peak:.1f} / {top:.1f} ({top / peak - 1:+.1%})", *told, f"{share:.2f}", f"{took:.0f}"]
+            [name, force, f"{peak:.1f} / {top:.1f} ({top / peak - 1:+.1%})", *changes, f"{share:.2f}", f"{took:.0f}"]
         )
-    said, turned = "", None
+    summary, turned = "", None
     if not args.quick:
         push, took = pushed(LOADS["WS100"], TURNS)
         turned = curve_of(push)
-        said = cyclic(measured("WS1100_cyclic_envelope"), turned, took)
+        summary = cyclic(measured("WS1100_cyclic_envelope"), turned, took)
     plotting.save(drawn(pushes, turned), out / "granite_walls.png")
     header = ("wall", "N [kN]", "V max, test / found [kN]", "at 2 mm", "at 6 mm", "V at the end / max", "processor [s]")
-    cli.report(out / "granite_walls", f"{cli.table(header, rows)}\n\n{said}".rstrip(), header, rows)
+    cli.report(out / "granite_walls", f"{cli.table(header, rows)}\n\n{summary}".rstrip(), header, rows)
 
 
 if __name__ == "__main__":

@@ -89,8 +89,8 @@ def drawn(found: dict[float | None, list[float]], stiffnesses: Sequence[float]) 
     ax = figure.subplots()
     others = np.array([values for ratio, values in found.items() if ratio != RATIOS[0]])
     apart = 100 * max(float(np.ptp(others, axis=0).max()), 0.5 * WIDTH)
-    said = f"$k_s$ from {RATIOS[1]:g} $k_n$ to rigid: alike to {apart:.1g} %"
-    ax.plot(stiffnesses, others.mean(axis=0), "o-", color=BLUE, label=said)
+    label = f"$k_s$ from {RATIOS[1]:g} $k_n$ to rigid: alike to {apart:.1g} %"
+    ax.plot(stiffnesses, others.mean(axis=0), "o-", color=BLUE, label=label)
     ax.plot(
         stiffnesses, found[RATIOS[0]], "v--", color=ORANGE, markerfacecolor="none", label=f"$k_s$ = {RATIOS[0]:g} $k_n$"
     )

@@ -125,9 +125,9 @@ def drawn(measured: dict[float, float], answers: dict[float, mr.MasonryResponse]
         (0 * mu + turning, "turns as a whole: $b/h$", (0.2, turning)),
         (0 * mu + stair(), "turns above a stair", (0.2, stair())),
     )
-    for y, said, place in bounds:
+    for y, label, place in bounds:
         ax.plot(mu, y, color="0.5", linestyle="--", linewidth=1)
-        ax.text(*place, said, color="0.3", fontsize=SMALL, va="bottom", ha="right" if place[0] > 0.5 else "left")
+        ax.text(*place, label, color="0.3", fontsize=SMALL, va="bottom", ha="right" if place[0] > 0.5 else "left")
     look = {"color": plotting.STYLES["MuJoCo"]["color"], "marker": "o", "linestyle": "", "markersize": 7}
     ax.plot(list(measured), list(measured.values()), label="MuJoCo", **look)
     last = max(measured)

@@ -91,15 +91,15 @@ def landings(lines: list[str], rows: list[list[object]], quick: bool) -> None:
     for degrees in (20.0,) if quick else (0.0, 20.0, 60.0):
         scene = mr.scene_of(landing(degrees, HEIGHTS[0]))
         exact = closed_form(degrees, scene.contacts.k.sum(), scene.contacts.c.sum())
-        said = [f"  {degrees:2g} degrees: closed form {exact:.3f}"]
+        parts = [f"  {degrees:2g} degrees: closed form {exact:.3f}"]
         for resolved in RESOLVED[2:3] if quick else RESOLVED:
             cases = [landing(degrees, height) for height in HEIGHTS]
             h = resolved / scene.highest_frequency
             taken = [lost(mr.simulate(case, timestep=h, ledger=True, collisions=True)) for case in cases]
-            said.append(f"omega h {resolved:g}: {np.mean(taken):.3f} +- {np.std(taken):.3f}")
+            parts.append(f"omega h {resolved:g}: {np.mean(taken):.3f} +- {np.std(taken):.3f}")
             rows.append([f"landing at {degrees:g} degrees", resolved, exact, np.mean(taken), np.std(taken)])
-        said.append(f"explicit steps: {lost(mr.solve_explicit(landing(degrees, HEIGHTS[0]), ledger=True)):.3f}")
-        lines.append(", ".join(said))
+        parts.append(f"explicit steps: {lost(mr.solve_explicit(landing(degrees, HEIGHTS[0]), ledger=True)):.3f}")
+        lines.append(", ".join(parts))
 
 
 def sliding(lines: list[str], rows: list[list[object]], quick: bool) -> None:
@@ -113,12 +113,14 @@ def sliding(lines: list[str], rows: list[list[object]], quick: bool) -> None:
     runs = {"explicit steps": mr.solve_explicit(case, ledger=True)}
     for resolved in RESOLVED[2:3] if quick else RESOLVED[1:]:
         runs[f"omega h {resolved:g}"] = mr.simulate(case, timestep=resolved / highest, ledger=True, collisions=True)
-    said = [f"A cube slides at {speed:g} m/s with mu = {mu:g}, its way over theory's, and the share that dashpots take"]
+    parts = [
+        f"A cube slides at {speed:g} m/s with mu = {mu:g}, its way over theory's, and the share that dashpots take"
+    ]
     for name, run in runs.items():
         way = (run.pose[-1, 0, 0] - run.pose[0, 0, 0]) / (speed**2 / (2 * mu * mr.GRAVITY))
-        said.append(f"{name}: {way:.4f}, {lost(run):.2%}")
+        parts.append(f"{name}: {way:.4f}, {lost(run):.2%}")
         rows.append(["cube that slides", name, 1.0, way, lost(run)])
-    lines.append("; ".join(said))
+    lines.append("; ".join(parts))
 
 
 def on_two_supports() -> mr.MasonryCase:
@@ -200,8 +202,8 @@ def main(argv: Sequence[str] | None = None) -> None:
             found[name] = points_of(CASES[name](), args.quick)
             lines.append(f"{name}: error over the largest displacement, and time of the processor")
             for solver, setting, error, seconds in found[name]:
-                said = f", omega h {setting:g}" if solver == "plain model" else ""
-                lines.append(f"  {solver}{said}: {error:.2%} in {seconds:.2f} s")
+                step = f", omega h {setting:g}" if solver == "plain model" else ""
+                lines.append(f"  {solver}{step}: {error:.2%} in {seconds:.2f} s")
                 rows.append([name, setting, solver, error, seconds])
     header = ["case", "setting", "solver", "found", "scatter, or time [s]"]
     cli.report(out / "plain_masonry", "\n".join(lines), header, rows)

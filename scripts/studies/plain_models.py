@@ -94,7 +94,7 @@ def first(values: NDArray[np.float64]) -> float:
     return float(values[0]) if len(values) else math.nan
 
 
-def told(values: NDArray[np.float64], count: int = 3) -> str:
+def values_text(values: NDArray[np.float64], count: int = 3) -> str:
     """The first rebounds in words."""
     return " ".join(f"{value:.4f}" for value in values[:count])
 
@@ -107,12 +107,12 @@ def figure_3(lines: list[str], rows: list[list[object]], steps: Sequence[float])
         e = mr.Restitution.from_geometry(paper.FIGURE_3)
         wall = Released.of("Figure 3", paper.FIGURE_3, e, one_sided=one_sided, k_n=paper.K_N, rebounds=3)
         law = wall.law()
-        lines.append(f"Figure 3, {sides}: law {told(law)}, theory {told(wall.theory())}")
+        lines.append(f"Figure 3, {sides}: law {values_text(law)}, theory {values_text(wall.theory())}")
         for h in steps:
             (plain, seconds), (points, took) = (wall.run(h, collisions=given) for given in (True, False))
             lines.append(
-                f"  {1e3 * h:4g} ms, omega h {h * wall.omega:.3f}: plain {told(plain)} in {seconds:.2f} s, "
-                f"contact points {told(points)} in {took:.2f} s"
+                f"  {1e3 * h:4g} ms, omega h {h * wall.omega:.3f}: plain {values_text(plain)} in {seconds:.2f} s, "
+                f"contact points {values_text(points)} in {took:.2f} s"
             )
             off = [float(each[0] / law[0] - 1) for each in (plain, points)]
             rows.append([f"Figure 3, {sides}", h, h * wall.omega, law[0], plain[0], points[0]])
@@ -154,12 +154,12 @@ def table_1(
             off.append([value / first(law) - 1 for value in both])
         plain, points = np.array([pair for pair in off if not np.isnan(pair).any()]).T
         errors[resolved] = (plain, points)
-        said = " and ".join(
+        shares = " and ".join(
             f"{np.median(np.abs(each)):.2%} (median), {np.abs(each).max():.1%} (largest)" for each in (plain, points)
         )
         within = (np.abs(plain) < 0.01).mean()
         lines.append(
-            f"{len(plain)} walls of Table 1, omega h = {resolved:g}: plain {said} for contact points; "
+            f"{len(plain)} walls of Table 1, omega h = {resolved:g}: plain {shares} for contact points; "
             f"{within:.0%} of the plain ones within 1 %"
         )
     return errors

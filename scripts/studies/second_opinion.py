@@ -39,7 +39,7 @@ RESOLVED = 0.5
 SOLVERS = ("explicit", "plain")
 CODES = {"explicit": "explicit", "plain": "plain MuJoCo"}
 """The line of each in a figure."""
-ASKED = ("fallen", "first fall [s]", "moved [m]", "lost [J]")
+COMPARED = ("fallen", "first fall [s]", "moved [m]", "lost [J]")
 """What is compared."""
 
 
@@ -165,7 +165,7 @@ SCENES: dict[str, Callable[[], mr.MasonryCase]] = {
 class Fall:
     """One run: what is compared, the largest overlap [-], the time of the processor [s] and where the blocks end."""
 
-    asked: NDArray[np.float64]
+    compared: NDArray[np.float64]
     overlap: float
     seconds: float
     end: NDArray[np.float64]
@@ -192,14 +192,14 @@ def fall(case: mr.MasonryCase, solver: str) -> Fall:
     assert answer.ledger is not None
     lost = answer.ledger.friction[-1] + sum(account[-1] for account in answer.ledger.dashpots.values())
     first = next(iter(answer.fallen.values()), math.nan)
-    asked = np.array([len(answer.fallen), first, moved.mean(), lost])
+    compared = np.array([len(answer.fallen), first, moved.mean(), lost])
     seconds = float(answer.stats["stepping_processor_time"])
-    return Fall(asked, float(answer.stats["overlap"]), seconds, answer.pose[-1, :, :d])
+    return Fall(compared, float(answer.stats["overlap"]), seconds, answer.pose[-1, :, :d])
 
 
 def apart(one: Sequence[Fall], other: Sequence[Fall]) -> NDArray[np.float64]:
     """How far the means of two codes lie apart, over their scatter [-], of all that is compared."""
-    both = [np.array([each.asked for each in runs]) for runs in (one, other)]
+    both = [np.array([each.compared for each in runs]) for runs in (one, other)]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # where no block falls there is no first one
         means, scatter = (np.array([of(each, axis=0) for each in both]) for of in (np.nanmean, np.nanstd))
@@ -214,8 +214,8 @@ def drawn(runs: dict[str, dict[str, list[Fall]]]) -> Figure:
     rows = np.arange(len(runs))
     for ax, i, label in ((axes[0], 2, "mean displacement in the end"), (axes[1], 3, "energy lost")):
         for (solver, of), shift in zip(CODES.items(), (0.15, -0.15), strict=True):
-            values = [np.array([each.asked[i] for each in by[solver]]) for by in runs.values()]
-            scale = [np.mean([each.asked[i] for each in by["explicit"]]) for by in runs.values()]
+            values = [np.array([each.compared[i] for each in by[solver]]) for by in runs.values()]
+            scale = [np.mean([each.compared[i] for each in by["explicit"]]) for by in runs.values()]
             middle = np.array([one.mean() / by for one, by in zip(values, scale, strict=True)])
             spread = np.array([one.std() / by for one, by in zip(values, scale, strict=True)])
             look = plotting.STYLES[of]
@@ -245,13 +245,13 @@ def main(argv: Sequence[str] | None = None) -> None:
                 for seed in range(seeds):
                     runs[name][solver].append(fall(nudged(case, seed), solver))
                     bar.update()
-    header = ["scene", "blocks", "code", *ASKED, "overlap", "time [s]", "apart over scatter"]
+    header = ["scene", "blocks", "code", *COMPARED, "overlap", "time [s]", "apart over scatter"]
     rows: list[list[object]] = []
     for name, by in runs.items():
         parted = apart(by["explicit"], by["plain"])
         for solver, falls in by.items():
-            asked = np.array([each.asked for each in falls])
-            cells = [f"{values.mean():.3g} +- {values.std():.2g}" for values in asked.T]
+            compared = np.array([each.compared for each in falls])
+            cells = [f"{values.mean():.3g} +- {values.std():.2g}" for values in compared.T]
             overlap, seconds = max(each.overlap for each in falls), np.mean([each.seconds for each in falls])
             far = " ".join("-" if math.isnan(value) else f"{value:.1f}" for value in parted)
             blocks = len(falls[0].end)

@@ -194,7 +194,7 @@ def draw_curves(ax: Axes, fits: Mapping[str, tuple[mr.Fragility, mr.Fragility]],
     return ax
 
 
-def finish(out: Path, town: Town, said: Sequence[str]) -> None:
+def finish(out: Path, town: Town, sentences: Sequence[str]) -> None:
     """Fit, draw and print."""
     fits = town.fits()
     figure = Figure(figsize=(7.4, 7.6), layout="constrained")
@@ -210,7 +210,7 @@ def finish(out: Path, town: Town, said: Sequence[str]) -> None:
             low, high = both[which].median_interval()
             row += [f"{both[which].median:.2f}", f"{low:.2f} to {high:.2f}", f"{both[which].dispersion:.2f}"]
     lines = [f"{name}, D2 of whole buildings of class A: median {median:.2f} g" for name, median in PUBLISHED.items()]
-    cli.report(out / "town", "\n".join([*said, cli.table(header, cells), *town.lines(), *lines]))
+    cli.report(out / "town", "\n".join([*sentences, cli.table(header, cells), *town.lines(), *lines]))
     names = ["wall", "record", "polarity", "outcome"]
     here = [row for row in town.rows if row["level"] == SHOWN]
     kept = [[*(row[name] for name in names), f"{float(row['peak_over_overturning'] or 0):.4f}"] for row in here]
@@ -228,15 +228,17 @@ def main(argv: Sequence[str] | None = None) -> None:
     table = cli.csv_text(COLUMNS, drawn(count=10 if args.quick else 200))
     with cli.write_text(out / "town_walls.csv", table).open(newline="", encoding="utf-8") as file:
         walls = {row["id"]: row for row in csv.DictReader(file)}
-    grid, store, said = grid_of(walls, 5 if args.quick else 6), out / "town.sqlite", list[str]()
+    grid, store, sentences = grid_of(walls, 5 if args.quick else 6), out / "town.sqlite", list[str]()
     if not (args.only_run or store.exists()):
         options = ["--quick"] * args.quick + (["--workers", str(args.workers)] if args.workers else [])
         count = killed(out, len(grid) // 4, options)
-        said.append(f"killed with SIGKILL at {count} of {len(grid)} rows; the same call kept them and ran the others")
+        sentences.append(
+            f"killed with SIGKILL at {count} of {len(grid)} rows; the same call kept them and ran the others"
+        )
     with executor_of(args.dask) as executor:
         rows = completed(grid, store, executor=executor, workers=args.workers)
     if not args.only_run:
-        finish(out, Town(walls, rows), said)
+        finish(out, Town(walls, rows), sentences)
 
 
 if __name__ == "__main__":

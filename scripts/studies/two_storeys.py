@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 import mjrock as mr
 from mjrock import plotting
 from scripts.shared import cli
-from scripts.shared.films import films, folder, told
+from scripts.shared.films import films, folder, summary_of
 
 UNIT = (0.4, 0.2)
 """Length and height of a unit [m]; a half unit is half as long."""
@@ -138,7 +138,7 @@ def filmed(study: Study, answer: mr.Response, out: Path) -> None:
     def draw(path: Path) -> Path:
         return plotting.animate(answer, path, title=title, limits=limits)
 
-    print(told(films(draw, out / "two_storeys_falls", 0.75 * study.followed)))
+    print(summary_of(films(draw, out / "two_storeys_falls", 0.75 * study.followed)))
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -65,10 +65,10 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(cli.parser(__doc__, "out/your_geometry").parse_args(argv).out)
     wall, stone = wall_in_cm(), notched()
     lines = []
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         as_it_is = mr.Masonry.from_meshes(wall, ground=True)
-    lines += [f"as it is: {each.message}" for each in said]
+    lines += [f"as it is: {each.message}" for each in warned]
     turned = mr.Masonry.from_meshes(wall, ground=True, unit="cm", up="y")
     lines.append(f"in cm, y upwards: {turned}, {len(turned.joints)} joints")
     for convex in (None, "hull", "parts"):

@@ -188,7 +188,7 @@ class Browser:
             file.write(base64.b64decode(data))
 
     @property
-    def asked(self):
+    def requested(self):
         """Addresses that the page has asked for."""
         return [one["params"]["request"]["url"] for one in self.events if one["method"] == "Network.requestWillBeSent"]
 

@@ -149,7 +149,7 @@ def test_a_gable_with_a_tie_in_italian_ends_in_a_pdf(address, tmp_path):
         }
         assert tables["language"] == "it"
         assert page.errors == []
-        assert {one for one in page.asked if not one.startswith((address, "data:", "blob:"))} == set()
+        assert {one for one in page.requested if not one.startswith((address, "data:", "blob:"))} == set()
     if shutil.which("pdftotext"):
         path = tmp_path / "report.pdf"
         path.write_bytes(content)

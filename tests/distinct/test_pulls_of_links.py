@@ -84,7 +84,7 @@ def test_a_link_is_where_its_ends_are(d, end):
     length, way, arm, anchor_arm, rate = geometry(whole, end)
     now = link.pull(row, whole)
     assert now.length == pytest.approx(length, rel=1e-12)
-    np.testing.assert_allclose(now.way, way, rtol=1e-11)
+    np.testing.assert_allclose(now.direction, way, rtol=1e-11)
     np.testing.assert_allclose(now.arm, arm, rtol=1e-12)
     np.testing.assert_allclose(now.anchor_arm, anchor_arm, rtol=1e-12)
     assert link.lengthening(row, whole, now) == pytest.approx(rate, rel=1e-11)

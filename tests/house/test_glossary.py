@@ -82,8 +82,15 @@ def names_of(path):
                 yield name, getattr(node, "lineno", 0)
 
 
+def helpers():
+    """The scripts, and what tests share."""
+    shared = [path for path in (ROOT / "tests").rglob("*.py") if not path.name.startswith("test_")]
+    return sorted([*(ROOT / "scripts").rglob("*.py"), *shared])
+
+
 def test_names_are_no_verbs_of_speech():
-    found = [f"{path.relative_to(ROOT)}:{line}: {name}" for path in modules() for name, line in names_of(path)]
+    places = [*modules(), *helpers()]
+    found = [f"{path.relative_to(ROOT)}:{line}: {name}" for path in places for name, line in names_of(path)]
     assert len(found) > 10000
     assert [name for name in found if SPEECH.search(name.rpartition(" ")[2])] == []
     assert SPEECH.search("_said")

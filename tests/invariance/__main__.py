@@ -63,10 +63,14 @@ def table(rows: Sequence[Row]) -> str:
         lines.append(line + "  " + " ".join(str(row["seed"]) for row, verdict, _ in found if verdict == VERDICTS[-1]))
     lines += ["", "refused by name:"]
     label_of = [re.sub(r"[\d.]+|(block|fixed)_\S+", "#", row["refused"])[:100] for row in rows if "refused" in row]
-    lines += [f"{number:5}  {said}" for said, number in Counter(label_of).most_common()]
+    lines += [f"{number:5}  {sentence}" for sentence, number in Counter(label_of).most_common()]
     for name in ("unnamed", "crashed"):
         lines += [f"{name}: {row['place']} {row['seed']}: {row[name]}" for row in rows if name in row]
-    lines += [f"wrong: {row['place']} {row['seed']} {row['kind']}: {said}" for row in answered for said in row["wrong"]]
+    lines += [
+        f"wrong: {row['place']} {row['seed']} {row['kind']}: {sentence}"
+        for row in answered
+        for sentence in row["wrong"]
+    ]
     return "\n".join(lines)
 
 

@@ -28,22 +28,22 @@ BELOW = 0.25
 """How far a corner may lie below the ground, over the size of its block [-], where no overlap is warned of."""
 
 
-def complaints(scene: Scene, answer: mr.Response, said: list[str]) -> Iterator[str]:
+def complaints(scene: Scene, answer: mr.Response, warned: list[str]) -> Iterator[str]:
     """What is wrong with an answer that has its ledger, its forces and a sample of every step.
 
     Args:
         scene: what was asked.
         answer: the answer.
-        said: the warnings of the run.
+        warned: the warnings of the run.
     """
     if not finite(answer):
         yield "not finite"
         return
-    overlapping = any("lie inside each other" in text for text in said)
+    overlapping = any("lie inside each other" in text for text in warned)
     if answer.stats.get("overlap", 0.0) > OVERLAP + pressed(scene) and not overlapping:
         yield f"overlap without a warning: {answer.stats['overlap']:.1%}"
     if answer.ledger is not None:
-        yield from complaints_of_ledger(answer.ledger, said)
+        yield from complaints_of_ledger(answer.ledger, warned)
     meets = scene["solver"] == "explicit" and scene["place"] != "wall"  # in MuJoCo blocks meet only at joints of rest
     if meets and not overlapping and (depth := below_the_ground(scene, answer)) > BELOW:
         yield f"below the ground: {depth:.1%} of a block"
@@ -73,11 +73,11 @@ def finite(answer: mr.Response) -> bool:
     return all(bool(np.isfinite(row).all()) for row in rows)
 
 
-def complaints_of_ledger(ledger: mr.Ledger, said: list[str]) -> Iterator[str]:
+def complaints_of_ledger(ledger: mr.Ledger, warned: list[str]) -> Iterator[str]:
     """A residual without a warning, and accounts that give back what they took."""
     scale = max(ledger.largest, 1e-300)
     unpaid = float(np.abs(ledger.residual).max()) / scale
-    if unpaid > UNPAID and not any("ledger" in text or "energy" in text for text in said):
+    if unpaid > UNPAID and not any("ledger" in text or "energy" in text for text in warned):
         yield f"ledger open without a warning: {unpaid:.1%}"
     takes = {name: account for name, account in ledger.taken.items() if not name.startswith("ends of faces")}
     for name, account in takes.items():

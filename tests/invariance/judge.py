@@ -33,7 +33,7 @@ def is_named(error: Exception) -> bool:
     return isinstance(error, ValueError | RuntimeError) and last.filename.startswith(PACKAGE)
 
 
-def told(error: Exception) -> str:
+def error_text(error: Exception) -> str:
     """An error and where it was raised."""
     last = traceback.extract_tb(error.__traceback__)[-1]
     return f"{type(error).__name__}: {str(error)[:300]} ({Path(last.filename).name}:{last.lineno})"
@@ -45,9 +45,9 @@ def overheard() -> Iterator[list[str]]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         warnings.simplefilter("error", RuntimeWarning)
-        said: list[str] = []
-        yield said
-        said += [str(warning.message) for warning in caught]
+        warned: list[str] = []
+        yield warned
+        warned += [str(warning.message) for warning in caught]
 
 
 def judge(seed: int, names: Collection[str] | None = None) -> dict[str, Any]:
@@ -63,7 +63,7 @@ def judge(seed: int, names: Collection[str] | None = None) -> dict[str, Any]:
         try:
             trial = Trial(scene)
         except Exception as error:
-            return row | {"refused" if is_named(error) else "unnamed": told(error)}
+            return row | {"refused" if is_named(error) else "unnamed": error_text(error)}
         row |= {"outcome": trial.answer.outcome.value, "steps": trial.answer.stats.get("steps", 0)}
         row["friction"] = trial.answer.stats.get("friction", "")
         row |= {"extent": trial.extent, "apart": {}}
@@ -86,7 +86,7 @@ def tried(trial: Trial, name: str) -> tuple[str, float | str] | None:
         distance = invariance.run(trial)
     except Exception as error:
         expected = is_named(error) and invariance.excuses(trial)
-        return "expected" if expected else "unexplained", told(error)
+        return "expected" if expected else "unexplained", error_text(error)
     if distance is None:
         return None
     if distance <= EQUAL * bool(invariance.floor):
@@ -105,15 +105,15 @@ def watched(trial: Trial) -> list[str]:
         scene = scene | {"timestep": trial.step}
         options["output_step"] = trial.step if close else trial.spacing
     try:
-        with overheard() as said:
+        with overheard() as warned:
             answer = solve(scene, **options)
     except Exception as error:
-        return [f"watched: {told(error)}"]
-    wrong = list(complaints(scene, answer, said))
+        return [f"watched: {error_text(error)}"]
+    wrong = list(complaints(scene, answer, warned))
     if any(GIVES_BACK in text for text in wrong) and scene["solver"] == "explicit":
         shorter = {"timestep": 0.25 * trial.step}  # what a line does within the step in which it leaves is not resolved
         with overheard():
-            finer = complaints(scene, solve(scene | shorter, **options | {"output_step": 0.25 * trial.step}), said)
+            finer = complaints(scene, solve(scene | shorter, **options | {"output_step": 0.25 * trial.step}), warned)
         still = [text for text in finer if GIVES_BACK in text]
         wrong = [text for text in wrong if GIVES_BACK not in text] + still
     if scene["solver"] == "explicit" and not np.array_equal(answer.pose[-1], trial.answer.pose[-1]):

@@ -70,12 +70,12 @@ class Scene:
         spec = mujoco.MjSpec.from_file(str(path))
         gravity = np.array(spec.option.gravity)
         spec.option.gravity = np.zeros(3)
-        asked: dict[tuple[str | int, str | int], dict[str, float]] = {
+        requested: dict[tuple[str | int, str | int], dict[str, float]] = {
             (foot, "floor"): {"k": robot.k, "restitution": e, "friction": 0.8} for foot in feet
         }
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            self.contacts = mr.contacts_for(spec, asked, keyframe=robot.keyframe, timestep=STEP)
+            self.contacts = mr.contacts_for(spec, requested, keyframe=robot.keyframe, timestep=STEP)
         self.warned = len(caught) > 0
         self.contacts.apply(spec)
         self.model = spec.compile()
@@ -152,9 +152,9 @@ class Scene:
         return k * sum(depths) / weight, off
 
 
-def lines(robot: Robot, path: Path, asked: Sequence[float]) -> Iterator[list[str]]:
+def lines(robot: Robot, path: Path, requested: Sequence[float]) -> Iterator[list[str]]:
     """One line for each foot and restitution."""
-    for e in asked:
+    for e in requested:
         together = Scene(robot, path, robot.feet, e).rebound()
         for foot, coupled in zip(robot.feet, together, strict=True):
             scene = Scene(robot, path, [foot], e)
@@ -171,13 +171,13 @@ def main(argv: Sequence[str] | None = None) -> None:
     options.add_argument("--packages", type=Path, nargs="*", default=(), help="folders with packages")
     args = options.parse_args(argv)
     out = cli.folder(args.out)
-    asked, seconds = ((0.5,), 0.5) if args.quick else ((0.2, 0.5, 0.8), 2.0)
+    requested, seconds = ((0.5,), 0.5) if args.quick else ((0.2, 0.5, 0.8), 2.0)
     rows: list[list[str]] = []
     standing: list[list[str]] = []
     for robot in ROBOTS:
         path = path_of(robot.model, args.packages)
         if path is not None:
-            rows += lines(robot, path, asked)
+            rows += lines(robot, path, requested)
             total, off = Scene(robot, path, robot.feet, 0.2).stand(seconds)
             standing.append([robot.name, f"{total:.5f}", f"{off:.1e}"])
     tables = [

@@ -44,7 +44,7 @@ def scene(e: float, friction: float, falls: bool) -> tuple[dict[str, Any], float
     return {"xml": spec.to_xml(), "velocity": velocity, "steps": steps}, contact.impratio
 
 
-def asked_scenes(quick: bool) -> list[tuple[str, float, float, bool]]:
+def requested_scenes(quick: bool) -> list[tuple[str, float, float, bool]]:
     """What is asked, the restitution, the friction, and whether it falls."""
     landings = [(f"e = {e}", e, 0.6, True) for e in ((0.5,) if quick else (0.3, 0.5, 0.8))]
     return [*landings, ("depth = 1 weight / k", 0.3, 0.6, False)]
@@ -62,8 +62,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     options.add_argument("--python", default=sys.executable, help="interpreter of an environment with MJX")
     args = options.parse_args(argv)
     out = cli.folder(args.out)
-    asked = asked_scenes(args.quick)
-    scenes = [scene(e, friction, falls) for _, e, friction, falls in asked]
+    requested = requested_scenes(args.quick)
+    scenes = [scene(e, friction, falls) for _, e, friction, falls in requested]
     rows, versions = [], ""
     for double in (True, False):
         question = json.dumps({"double": double, "scenes": [text for text, _ in scenes]})
@@ -78,7 +78,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         answer = json.loads(run.stdout.splitlines()[-1])
         versions = ", ".join(f"{name} {version}" for name, version in answer["versions"].items())
         versions += f", on the {answer['device']}; contacts made with MuJoCo {mujoco.__version__}"
-        for (label, _, friction, falls), (_, impratio), found in zip(asked, scenes, answer["answers"], strict=True):
+        for (label, _, friction, falls), (_, impratio), found in zip(requested, scenes, answer["answers"], strict=True):
             values = (measured(falls, found[name]) for name in ("mjx", "c"))
             rows.append([found["type"], f"{friction:g}", f"{impratio:.2g}", label, *values])
     cli.report(out / "mjx_contacts", "\n".join([cli.table(HEADER, rows), versions]), HEADER, rows)

@@ -42,7 +42,7 @@ def line(label: str, path: Path) -> list[str]:
     started = time.process_time()
     found = mr.inspect_contacts(model)
     spent = time.process_time() - started
-    moving = [contact for contact in found if not _says(contact, IMMOBILE)]
+    moving = [contact for contact in found if not _mentions(contact, IMMOBILE)]
     k = [contact.k_loaded for contact in moving]
     e = [contact.restitution for contact in moving]
     world = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, 0) or "[0]"
@@ -62,16 +62,16 @@ def line(label: str, path: Path) -> list[str]:
 
 def notes(found: Sequence[InspectedContact]) -> str:
     """How many contacts have which note."""
-    counts = {name: sum(_says(contact, part) for contact in found) for name, part in COUNTED.items()}
-    said = [f"{count} {name}" for name, count in counts.items() if count]
-    if any(_says(contact, DISABLED) for contact in found):
-        said.insert(0, "contacts disabled")
-    return "; ".join(said)
+    counts = {name: sum(_mentions(contact, part) for contact in found) for name, part in COUNTED.items()}
+    parts = [f"{count} {name}" for name, count in counts.items() if count]
+    if any(_mentions(contact, DISABLED) for contact in found):
+        parts.insert(0, "contacts disabled")
+    return "; ".join(parts)
 
 
-def _says(contact: InspectedContact, part: str | Sequence[str]) -> bool:
-    said = " ".join(contact.notes)
-    return any(word in said for word in ((part,) if isinstance(part, str) else part))
+def _mentions(contact: InspectedContact, part: str | Sequence[str]) -> bool:
+    notes = " ".join(contact.notes)
+    return any(word in notes for word in ((part,) if isinstance(part, str) else part))
 
 
 def main(argv: Sequence[str] | None = None) -> None:
