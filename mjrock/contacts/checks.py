@@ -356,7 +356,7 @@ def is_iterable(values: object) -> TypeGuard[Iterable[object]]:
 
 
 def listed(name: str, values: Iterable[Element]) -> list[Element]:
-    """The values of what can be gone through, whatever it says of its length.
+    """The values of an iterable as a list, whatever its length is.
 
     Raises:
         ValueError: if there are more than MOST_LISTED, as where they have no end.

@@ -201,7 +201,7 @@ class Bench:
                 state = posed_alike(self.model, pose.data)
                 state.qpos[:] = place
                 return pose, state
-            pose = self.pose.moved(place)
+            pose = self.pose.at_positions(place)
         raise ValueError(
             f"the joints do not bring geom1 and geom2 = {self.pair.labels} together from {self.pose.label}; give the "
             "pose in which they touch"

@@ -269,8 +269,8 @@ class Pose:
         self._landings: dict[tuple[int, ...], Landing] = {}
         self._groups: dict[tuple[int, ...], Group] = {}
 
-    def moved(self, qpos: Array) -> Pose:
-        """The same controls with other positions of the joints."""
+    def at_positions(self, qpos: Array) -> Pose:
+        """The same pose with other positions of the joints: controls and activations stay."""
         other = Pose(self.model, qpos=qpos)
         other.data.ctrl[:], other.data.act[:] = self.data.ctrl, self.data.act
         other.exact, other.label = self.exact, self.label

@@ -332,7 +332,9 @@ def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
     return f"{words} {mujoco.mj_id2name(model, kind, number) or f'[{number}]'!s}".strip()
 
 
-def yielding_joints(pair: GeomPair, pose: Pose, met: PairMeeting, law: PointLaw, xi: float, speed: float) -> Iterator[str]:
+def yielding_joints(
+    pair: GeomPair, pose: Pose, met: PairMeeting, law: PointLaw, xi: float, speed: float
+) -> Iterator[str]:
     """A sentence where joints give way within a blow, so that the mass at its end is another.
 
     Args:

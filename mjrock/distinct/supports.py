@@ -71,15 +71,15 @@ def places(supports: Supports, t: float) -> Array:
     return np.array([[support_place(supports, i, axis, t) for axis in range(d)] for i in range(count)]).reshape(-1, d)
 
 
-def surges(supports: Supports, t: float, until: float) -> Array:
-    """By how much the velocity of each support, or of each drive of a jack, changes at most until a time [m/s], shape
+def velocity_changes(supports: Supports, t: float, until: float) -> Array:
+    """Largest change of the velocity of each support, or of each drive of a jack, between two times [m/s], shape
     (supports,)."""
-    surges, d = np.zeros(len(supports.moved)), supports.moved.shape[1]
+    changes, d = np.zeros(len(supports.moved)), supports.moved.shape[1]
     for i, (first, last) in enumerate(zip(supports.first[:-1], supports.first[1:], strict=True)):
         times = supports.t[first:last]
         low, high = np.searchsorted(times, (t, until), side="right")
         parts = slice(first + max(low - 1, 0), min(first + high + 1, last))
         rates = np.diff(supports.displacement[parts], axis=0) / np.diff(supports.t[parts])[:, None]
         still = np.zeros((int(low == 0 or high == len(times)), d))  # before and after its history
-        surges[i] = np.linalg.norm(np.concatenate([rates, still]) - supports.moving[i], axis=1).max()
-    return surges
+        changes[i] = np.linalg.norm(np.concatenate([rates, still]) - supports.moving[i], axis=1).max()
+    return changes

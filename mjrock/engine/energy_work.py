@@ -232,10 +232,10 @@ class ContactForces(NamedTuple):
 
 
 @inlined
-def pressed_in(
+def contact_in_step(
     points: Points, record: Record, step: Step, room: LedgerRoom, impratio: float, n: int, i: int
 ) -> ContactForces:
-    """Contact i in step n of a record, whose frames, rates and rows are in the room."""
+    """Gap and forces of contact i in step n of a record. The room has the frames, rates and rows of that step."""
     places, inertia = points.places, room.inertia[i]
     closed = gap(places, i, room.frames, room.middle, room.acceleration)
     curve = closed.linear
@@ -265,7 +265,7 @@ def _contact_work(
         step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
         impratio = take_rows(points, step, room)
         for i in range(len(joint)):
-            now = pressed_in(points, record, step, room, impratio, n, i)
+            now = contact_in_step(points, record, step, room, impratio, n, i)
             given = spring_energy(places, i, room.seam) - spring_energy(places, i, room.next_seam)
             if not kinds.released_on[i] if n == 0 else now.gap >= 0:
                 work.dashpots[n, joint[i]] += given

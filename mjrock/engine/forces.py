@@ -21,7 +21,7 @@ from ..result.bodies import BodyMotion
 from ..result.forces import Forces, KeptForces, forces_of
 from ..result.ties import Plastic, motion_of_ties
 from ..scene.scene import Scene
-from .energy_work import LedgerRoom, pressed_in, take_rows, take_step
+from .energy_work import LedgerRoom, contact_in_step, take_rows, take_step
 from .record import Record, StepKinds, Steps, Windows
 from .rows import Points, Step, points_of
 from .sliding import slip_of
@@ -78,7 +78,7 @@ def _gather(points: Points, record: Record, windows: Windows, kinds: StepKinds, 
         step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
         impratio = take_rows(points, step, room)
         for i in range(len(places.k)):
-            now = pressed_in(points, record, step, room, impratio, n, i)
+            now = contact_in_step(points, record, step, room, impratio, n, i)
             if not kinds.released_on[i] if n == 0 else now.gap >= 0:
                 continue
             meets = where_friction_acts(places, meeting(places, i, room.frames))

@@ -8,7 +8,7 @@ from everyday import among
 from masonry_blocks import box
 
 import mjrock as mr
-from mjrock.distinct.supports import surges
+from mjrock.distinct.supports import velocity_changes
 from mjrock.distinct.system import Supports
 
 K_N, SPEED, SIDE = 1e10, 3.0, 0.05
@@ -29,7 +29,7 @@ def history(*corners):
 def test_a_surge_is_the_largest_change_of_velocity_until_a_time(t, until, expected):
     """It moves with 1 m/s along x, from 1 s on with -2 m/s, and from 2 s on it is still, as it is before its start."""
     supports = history((0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (2.0, -1.0, 0.0))
-    np.testing.assert_allclose(surges(supports, t, until), [expected, 0.0])
+    np.testing.assert_allclose(velocity_changes(supports, t, until), [expected, 0.0])
 
 
 @pytest.mark.parametrize("turns", among((0.054, 0.066, 0.068, 0.07, 0.072, 0.078), 0.072))

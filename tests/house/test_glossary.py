@@ -20,9 +20,9 @@ REPLACED = {
 }
 """Words that stand in no name, docstring, comment, message or page, and what is written instead."""
 PARTICIPLES = {
-    "Asked", "Changed", "Chosen", "Compared", "Declared", "Drawn", "Followed", "Gathered", "Given", "Held", "Listed",
-    "Looked", "Meets", "Moved", "Named", "Pressed", "Reported", "Shaken", "Stated", "Tilted", "Told", "Wanted",
-    "Watched",
+    "Asked", "Changed", "Chosen", "Compared", "Declared", "Drawn", "Followed", "Found", "Gathered", "Given", "Held",
+    "Listed", "Looked", "Meets", "Moved", "Named", "Pressed", "Reported", "Shaken", "Stated", "Tilted", "Told",
+    "Wanted", "Watched",
 }  # fmt: skip
 """Words that are no names of types: a type is a noun."""
 SPEECH = re.compile(r"(?<![a-z])(?:told|said|says?|asks?|asked)(?![a-z])", re.IGNORECASE)

@@ -233,7 +233,7 @@ def test_a_search_that_makes_no_progress_ends_before_the_most_poses(monkeypatch)
     scene, seen = standing_masonry(wall_beside_a_gap()), []
     monkeypatch.setattr(rest, "SLIDES", rest.POSES)
     with progress_given_to(seen.append), pytest.raises(rest.UnsettledError), rest.shown_search(scene.potential) as bar:
-        rest.searched(scene.potential, rest.Search(scene.contacts.k, limited=True, bar=bar))
+        rest.search_pose(scene.potential, rest.Search(scene.contacts.k, limited=True, bar=bar))
     assert rest.STALLED < len(seen) < rest.POSES / 2
 
 

@@ -16,7 +16,7 @@ from ...scene.parts import GROUND
 from ...scene.scene import Scene
 from ..rotation import rotation_change, rotations
 from ..rows import Row, Rows
-from ..supports import Supports, move_supports, moving, places, surges
+from ..supports import Supports, move_supports, moving, places, velocity_changes
 from ..system import Books, System
 from ..thread import add_force
 from .link import Kind, Named
@@ -75,10 +75,10 @@ class Actuators(Kind, Histories):
         pairs = np.broadcast_to(np.arange(len(bodies)), shares.shape[:2])
         return csr_array(super().rates(bodies) + entries(shares, pairs, shares.shape[1] * shares.shape[2]))
 
-    def surges(self, t: float, until: float) -> tuple[Integers, Array]:
-        """Those of the histories, on what is driven alone."""
+    def velocity_changes(self, t: float, until: float) -> tuple[Integers, Array]:
+        """Of actuators that drive a block, by their histories."""
         single = self.rows["body"] >= 0
-        return self.rows["body"][single], surges(self.drives, t, until)[single]
+        return self.rows["body"][single], velocity_changes(self.drives, t, until)[single]
 
     def remembered(self, t: float) -> Actuators:
         """Their displacements count from there."""

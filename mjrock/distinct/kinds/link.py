@@ -126,8 +126,8 @@ class Kind:
     def look_ahead(self, lead: float) -> None:
         """Let dashpots look ahead by some steps, see `step_length.LEAD`."""
 
-    def surges(self, t: float, until: float) -> tuple[Integers, Array]:
-        """The bodies that links drive, and by how much their speed changes at most from a time until another [m/s]."""
+    def velocity_changes(self, t: float, until: float) -> tuple[Integers, Array]:
+        """The bodies that links drive, and the largest change of their velocity between two times [m/s]."""
         return np.empty(0, dtype=np.int64), np.empty(0)
 
     def remembered(self, t: float) -> Kind:

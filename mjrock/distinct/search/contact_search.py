@@ -26,7 +26,7 @@ from ...quantities import Array, Flags, Integers
 from ...scene.scene import Scene
 from ..rotation import rotations
 from ..rows import chosen, joined, rows, unsound
-from ..supports import surges
+from ..supports import velocity_changes
 from ..system import Books, System
 from .constants import (
     HANDOVER_OPENING,
@@ -200,10 +200,10 @@ class ContactSearch:
         (blocks,)."""
         found, moves = np.zeros(self.count), np.flatnonzero(self.blocks.support >= 0)
         if len(moves):
-            found[moves] = surges(system.supports, t, until)[self.blocks.support[moves]]
+            found[moves] = velocity_changes(system.supports, t, until)[self.blocks.support[moves]]
         for table in system.links:
             if len(table.rows):
-                bodies, changes = table.surges(t, until)
+                bodies, changes = table.velocity_changes(t, until)
                 np.add.at(found, self.blocks.free[bodies], changes)
         return found
 

@@ -33,8 +33,8 @@ class Motion(NamedTuple):
         poses: where they are.
         velocity: of their centroids [m/s], shape (blocks, d).
         about: the largest velocity of a corner about the centroid of its block, and its surge [m/s], shape (blocks,).
-        surge: by how much the velocity of a block that is driven changes until the next update, see `supports.surges`
-            [m/s], shape (blocks,).
+        surge: largest change of the velocity of a driven block until the next update [m/s], shape (blocks,), see
+            `supports.velocity_changes`.
     """
 
     poses: Poses

@@ -192,7 +192,7 @@ class AppliedLaw:
         return values
 
     def row(self, values: Array) -> Any:
-        """The row of a law from its numbers."""
+        """The numbers of a law as a row, in which they have names."""
         kind = layout(self.kind)
         return values[: kind.itemsize // 8].view(kind).view(np.recarray)[0]
 

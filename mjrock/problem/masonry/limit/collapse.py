@@ -18,7 +18,7 @@ from ..blocks.joints_in_space import tangent_axes_along
 from ..laws.joint_law import shear_limit
 from ..masonry import Masonry
 from .limit_state import Programme, states_without_dilatancy
-from .statics import Pulls, bonded, cones, edges_of, least_cost, method, moving, sizes_of, weight_of
+from .statics import Pulls, bonded, cone_edges, cones, least_cost, method, moving, sizes_of, weight_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +210,7 @@ def _associated(
         answer.x[:count].reshape(-1, len(lines.k), 1),
         shear_limit(masonry.table.laws(lines.joint, friction=friction[lines.joint]), 1.0),
     )
-    forces = (shares * (lines.normal + np.asarray(limits)[:, None] * edges_of(tangents))).sum(axis=0)
+    forces = (shares * (lines.normal + np.asarray(limits)[:, None] * cone_edges(tangents))).sum(axis=0)
     forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * directions).sum(axis=0)
     return LimitForces((float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces, answer.x[end:-1])
 

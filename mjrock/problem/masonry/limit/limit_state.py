@@ -32,7 +32,7 @@ from ....quantities import Array, Flags, Integers
 from ..laws.joint_law import shear_limit
 from ..lines import rates
 from ..masonry import Masonry
-from .statics import Pulls, edges_of, least_cost, method, sizes_of, weight_of
+from .statics import Pulls, cone_edges, least_cost, method, sizes_of, weight_of
 
 SLOPE, SHRINKS, LEAST_SLOPE = 0.3, 0.9, 0.01
 """Dilatancy of the first cone that follows the pressures, over the friction, its factor a turn, and the least [-]."""
@@ -111,7 +111,7 @@ class Programme:
         lines, sizes = masonry.lines, sizes_of(masonry)
         m, group = len(lines.k), np.arange(len(lines.k)) if masonry.in_space else lines.joint
         leader, of_line = np.unique(group, return_index=True, return_inverse=True)[1:]
-        edges = edges_of(tangents)
+        edges = cone_edges(tangents)
         rubbing = [rates(masonry.blocks, lines, edge)[leader] for edge in edges]
         limits = np.asarray(shear_limit(masonry.table.laws(lines.joint), 1.0))
         friction, whole = csr_array((limits, (of_line, np.arange(m))), shape=(len(leader), m)), eye_array(len(leader))

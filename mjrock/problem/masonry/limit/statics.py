@@ -176,7 +176,7 @@ def cones(masonry: Masonry, friction: Array, tangents: tuple[Array, ...] | None 
     pressing = rates(masonry.blocks, lines, lines.normal)
     law = masonry.table.laws(lines.joint, friction=friction[lines.joint])
     rubbed = diags_array(shear_limit(law, 1.0))  # along the face, of a unit pressure
-    rows = [pressing + rubbed @ rates(masonry.blocks, lines, edge) for edge in edges_of(tangents or lines.tangents)]
+    rows = [pressing + rubbed @ rates(masonry.blocks, lines, edge) for edge in cone_edges(tangents or lines.tangents)]
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 
 
@@ -206,8 +206,8 @@ def bonded(masonry: Masonry, tangents_given: tuple[Array, ...] | None = None) ->
     return csc_array(diags_array(1 / sizes_of(masonry)) @ columns), limits, directions
 
 
-def edges_of(tangents: tuple[Array, ...]) -> Array:
-    """Directions along the faces of the edges of the cones of lines, both ways in the plane, shape (edges, m, d)."""
+def cone_edges(tangents: tuple[Array, ...]) -> Array:
+    """Tangential directions of the edges of the friction cones of lines: two in the plane, shape (edges, m, d)."""
     count = 2 if len(tangents) == 1 else EDGES
     turns = 2 * math.pi * np.arange(count) / count
     spread = np.column_stack([np.cos(turns), np.sin(turns)])[:, : len(tangents)]
