@@ -386,9 +386,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     store = out / "other_codes.sqlite"
     pulses, choices = (PULSES[2::14], CHOICES[:1]) if args.quick else (PULSES, CHOICES)
     short, speeds = (SHORT[2:3], SPEEDS[::6]) if args.quick else (SHORT, SPEEDS)
-    tasks = [searched(AS_PUBLISHED, t_p, below=0 if args.quick else 25, spacing=0.03) for t_p in pulses]
-    below = 0 if args.quick else 12
-    tried = {(one.name, t_p): searched(one, t_p, below=below) for one in choices for t_p in CHOSEN_AT}
+    rough: Mapping[str, Any] = {"below": 0, "tolerance": 0.2} if args.quick else {}
+    tasks = [searched(AS_PUBLISHED, t_p, **{"below": 25, "spacing": 0.03, **rough}) for t_p in pulses]
+    tried = {(one.name, t_p): searched(one, t_p, **{"below": 12, **rough}) for one in choices for t_p in CHOSEN_AT}
     rows = completed([*tasks, *tried.values()], store, workers=args.workers)
     by_pulse = dict(zip(pulses, rows, strict=False))
     found = {t_p: row["capacity_g"] for t_p, row in by_pulse.items()}
