@@ -200,23 +200,22 @@ class Wall:
 
     def base_forces(self, y: Array) -> tuple[Array, Array]:
         """Signed forces of the base points before clipping [N], and their levers about the centroid [m]."""
-        _, z, theta, _, vz, omega = y
+        _, z, theta, _, vz, omega = y.tolist()
         gap = self.base_gap(z, theta)
         lever = self.at * math.cos(theta) - self.up * math.sin(theta)
-        force = -(self.base.stiffness * gap + self.base.damping * (vz - omega * lever))
-        return np.where(gap < 0, force, -self.base.stiffness * gap), lever
+        return -(self.base.stiffness * gap + (gap < 0) * self.base.damping * (vz - omega * lever)), lever
 
     def edge_load(self, t: float, y: Array) -> float:
         """Positive while an edge of the base is loaded, so that friction holds it [N]."""
         force, _ = self.base_forces(y)
-        return float(max(force[0], force[-1]))
+        return max(float(force[0]), float(force[-1]))
 
     def grip(self, y: Array) -> tuple[float, float]:
         """Height above the centroid of the point where friction acts [m], and its rate [m/s].
 
         It is at the lower edge, halfway between the two faces that overlap there.
         """
-        _, z, theta, _, vz, omega = y
+        _, z, theta, _, vz, omega = y.tolist()
         toe = self.edges[0] if math.copysign(1.0, theta) > 0 else self.edges[1]
         sine, cosine = math.sin(theta), math.cos(theta)
         edge, rate = -toe * sine - self.up * cosine, -(toe * cosine - self.up * sine) * omega
@@ -224,12 +223,11 @@ class Wall:
 
     def free(self, t: float, y: Array, shaken: bool = True) -> Array:
         """Rates of the state of a wall whose base may slide."""
-        x, z, theta, vx, _, omega = y
+        x, z, theta, vx, vz, omega = y.tolist()
         force, lever = self.base_forces(y)
         force = np.maximum(force, 0)
         Fx, Fz, moment = 0.0, float(force.sum()), -float(force @ lever)
-        if self.side is not None:
-            gap = self.side_gap(x, theta)
+        if self.side is not None and (gap := self.side_gap(x, theta)).min() < 0:
             height = self.face * math.sin(theta) + self.heights * math.cos(theta)
             push = -(self.side.stiffness * gap + self.side.damping * (vx + omega * height))
             push = np.where(gap < 0, np.maximum(push, 0), 0)
@@ -253,13 +251,13 @@ class Wall:
             Fx -= self.mass * float(self.case.motion(self.within_arc(t)))
         if shaken and self.case.vertical is not None:
             Fz -= self.mass * float(self.case.vertical(self.within_arc(t)))
-        return np.array([y[3], y[4], y[5], Fx / self.mass, Fz / self.mass - GRAVITY, moment / self.inertia])
+        return np.array([vx, vz, omega, Fx / self.mass, Fz / self.mass - GRAVITY, moment / self.inertia])
 
     def sticking(self, t: float, y: Array, shaken: bool = True) -> Array:
         """Rates of the state of a wall whose lower edge does not slip."""
         rates = self.free(t, y, shaken)
         above, rate = self.grip(y)
-        slipping = rates[3] + rates[5] * above + y[5] * rate
+        slipping = float(rates[3] + rates[5] * above + y[5] * rate)
         friction = -slipping / (1 / self.mass + above**2 / self.inertia)
         rates[3] += friction / self.mass
         rates[5] += friction * above / self.inertia

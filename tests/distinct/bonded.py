@@ -45,7 +45,7 @@ class Led:
         self.system.bodies["inverse_mass"], self.system.bodies["inverse_inertia"] = 0.0, 0.0
         self.books = Books.empty(self.system, 2)
         self.samples = Samples.room(2, self.system, self.books, ledger=True)
-        self.body = np.asarray(self.system.bodies)
+        self.body, self.threads = np.asarray(self.system.bodies), alone(self.system)
         self.tables = [np.asarray(table) for table in (self.system.lines, self.system.laws[0].rows)]
         d = len(self.at)
         along, normal = ((np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle)))
@@ -67,7 +67,7 @@ class Led:
         """One step, at the end of which the forces are those of the new pose."""
         self.body["place"][0] = self.at
         clock = Clock(1, self.h, 1, 0, 2, 10**9, np.inf, self.h, (0.0,) * len(self.at))
-        advance(self.system, self.books, self.samples, clock, alone(self.system))
+        advance(self.system, self.books, self.samples, clock, self.threads)
 
     def forces(self):
         push = sum(table["push"].sum() for table in self.tables)
