@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from everyday import among
 
 import mjrock as mr
 
@@ -179,7 +180,7 @@ CORNERS = 0, 30, 37, 45, 53, 90
 JOBS = {"gable": of_gable, "parapet": of_parapet, "facade": of_facade, "row_houses": of_row_houses}
 
 
-@pytest.mark.parametrize("name", JOBS)
+@pytest.mark.parametrize("name", among(list(JOBS), "parapet", "facade"))
 def test_a_whole_job_has_the_verdicts_and_the_runs_of_python(name):
     job, assessment = JOBS[name](), mr.from_toml(FILES / f"{name}.toml")
     assert list(assessment.mechanisms) == list(job.checked)

@@ -61,7 +61,7 @@ def default_step(masonry):
 @pytest.mark.parametrize(
     ("xi", "mean", "scatter"),
     [
-        (0.0, 1e-4, 1e-4),
+        slow((0.0, 1e-4, 1e-4)),
         (0.05, 3e-3, 1e-3),
         slow((0.1, 3e-3, 2e-3)),
         slow((0.15, 1e-2, 3e-3)),

@@ -170,7 +170,7 @@ def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -
 def rates(blocks: Sequence[AnyBlock], lines: Lines, directions: Array) -> csr_array:
     """Rates at which the lines move apart in given directions, see `mjrock.linear.rates_of`.
 
-    Directions are unit vectors, shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps. The
+    Directions have the shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps. The
     bodies are the blocks that are not fixed, in order.
     """
     centroids, number = np.array([block.centroid for block in blocks]), free_numbers(blocks)

@@ -173,10 +173,10 @@ def cones(masonry: Masonry, friction: Array, tangents: tuple[Array, ...] | None 
     along the faces, which are those of `Lines.tangents` unless others are given.
     """
     lines = masonry.lines
-    pressing = rates(masonry.blocks, lines, lines.normal)
     law = masonry.table.laws(lines.joint, friction=friction[lines.joint])
-    rubbed = diags_array(shear_limit(law, 1.0))  # along the face, of a unit pressure
-    rows = [pressing + rubbed @ rates(masonry.blocks, lines, edge) for edge in cone_edges(tangents or lines.tangents)]
+    limit = np.asarray(shear_limit(law, 1.0))[:, None]  # along the face, of a unit pressure
+    edges = lines.normal + limit * cone_edges(tangents or lines.tangents)
+    rows = [rates(masonry.blocks, lines, edge) for edge in edges]
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 
 
