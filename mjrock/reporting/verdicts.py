@@ -185,7 +185,7 @@ def verdict_table(order: Sequence[Mechanism], words: Words) -> Markup:
     rows = []
     for mechanism in order:
         held, count = mechanism.holding, len(mechanism.verdicts)
-        count_text = words("conditions_held", holding=held, count=count)
+        count_text = words("conditions_held", held=held, count=count)
         name = element("td", element("b", mechanism.name), Markup("<br>"), count_text, rowspan=str(count))
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
@@ -230,7 +230,7 @@ def sentence_of(mechanism: Mechanism, key: str, words: Words) -> Sentence:
     least, verdicts, kind = mechanism.least, mechanism.verdicts, mechanism.kind
     refused = "; ".join(_of(verdict, words) for verdict in verdicts if not verdict.holds)
     numbers = {"ratio": words.ratio(least.ratio), "check": _of(least, words)}
-    end = words("lead_ratio", holding=mechanism.holding, count=len(verdicts), **numbers)
+    end = words("lead_ratio", held=mechanism.holding, count=len(verdicts), **numbers)
     start = f"{words(key, name=mechanism.name)} {words(f'lead_{kind}', refused=refused)}"
     return Sentence(kind, start, end)
 
@@ -308,7 +308,7 @@ def design_sentence(found: Design, words: Words) -> str:
     if len(found.trials) > 1 and found.trials[0].holds:
         held = sum(trial.holds for trial in found.trials)
         least = {"name": words.marked(found.least.label), "ratio": words.ratio(found.least.ratio)}
-        return words("design_held", holding=held, count=count, **least)
+        return words("design_held", held=held, count=count, **least)
     if found.chosen is not None:
         return words("design_chosen", name=words.marked(found.chosen.label), count=count, every=every)
     best = found.nearest

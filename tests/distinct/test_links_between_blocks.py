@@ -40,7 +40,7 @@ def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
     clock = Clock(0, h, 5, 0, 5 * count + 1, 5 * count, np.inf, 0.0, (0.0,) * len(system.axes))
     advance(system, books, samples, clock, alone(system))
     mass = scene.bodies.mass[0]
-    samples = samples.taken(slice(-1))
+    samples = samples.chosen(slice(-1))
     np.testing.assert_allclose(samples.velocity[:, :, 0].sum(axis=1), SPEED, atol=1e-9)  # momentum
     apart = samples.pose[:, 1, 0] - samples.pose[:, 0, 0]
     relative_velocity = samples.velocity[:, 1, 0] - samples.velocity[:, 0, 0]

@@ -745,10 +745,12 @@ def _number_of(found: RecordTable, column: object) -> int:
         fit = [i for i, name in enumerate(names) if name.casefold() == column.strip().casefold()]
         if len(fit) == 1:
             return fit[0]
-    valid = f"the file has no names; give numbers, 0 to {found.width - 1}"
-    if found.names:
-        valid = f"the names are {', '.join(map(in_message, found.names))}"
-    raise ValueError(f"columns has {in_message(column)}; {valid}")
+    if not found.names:
+        raise ValueError(
+            f"columns has {in_message(column)}; the file has no names; give numbers, 0 to {found.width - 1}"
+        )
+    valid = ", ".join(map(in_message, found.names))
+    raise ValueError(f"columns has {in_message(column)}; the names are {valid}")
 
 
 def _grid(time: Array) -> tuple[float, float]:
