@@ -66,7 +66,8 @@ class Reader:
         self.faults.append(Fault(place, message, line_of(place, self.text)))
 
     def refusal(self, place: Place, template: str, **values: object) -> RefusedError:
-        """Keep what is wrong with a key or table, as the template of a message about its `place`; to be raised."""
+        """Keep what is wrong with a key or table, as the template of a message about its `place`, and return the error
+        to raise."""
         self.refuse(place, Message(template, place=spelt_place(place), **values))
         return RefusedError()
 

@@ -112,7 +112,7 @@ class SolverNeed(NamedTuple):
 
     Args:
         iterations, ls_iterations: the options of these names that are enough; those of the model if it has enough.
-        converges: whether the solver converges in `MOST` iterations.
+        converges: whether the solver converges in `MOST_TURNS` iterations.
         impratio: with which it converges where it does not with that of the contacts; infinity if none is found. A load
             that friction holds then creeps faster, as much as impratio is smaller.
         tried: whether the contacts could be tried; the numbers are those of the model where not.

@@ -83,11 +83,14 @@ def solve_explicit(
     Raises:
         ValueError: if the contacts do not fit the case, if the masonry does not stand, for a step that is not stable,
             or for a value outside its range.
-        RuntimeError: if more energy appears than was there and was put in.
+        TypeError: for an argument of another type.
+        RuntimeError: if numbers are no longer finite, or if more energy appears than was there and was put in.
 
     Warns:
-        UserWarning: of dashpots that make the steps take more than some ten seconds, or of a tie drawn out too far.
-        Implausible: of a given timestep that is far below what the contacts need.
+        UserWarning: of dashpots that make the steps take more than some ten seconds, of a tie drawn out too far, of
+            blocks inside each other, and of contacts that had to be softened.
+        Implausible: of a given timestep that is far below what the contacts need, and of a wall at rest that nothing
+            moves.
 
     Examples:
         >>> column = mr.Masonry.column(width=0.5, height=2.0, drums=4)
@@ -111,7 +114,7 @@ def solve_explicit(
         )
     scene, grid = setup.scene, TimeGrid.of_run(setup.step_length, setup.course.duration, timestep, spacing)
     count, bodies = grid.samples, len(scene.bodies.names)
-    require_size("the samples of this answer", count * bodies, "raise output_step or follow it for less")
+    require_size("the samples of this answer", count * bodies, "raise output_step, or shorten the duration")
     books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.has_motion_damping)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")

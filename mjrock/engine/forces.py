@@ -28,7 +28,7 @@ from .sliding import slip_of
 
 
 class Loads(NamedTuple):
-    """What is gathered of the contacts, and of what.
+    """Forces of the contacts on joints and fixed blocks, and the steps and joints that they belong to.
 
     Args:
         steps: numbers of the steps, shape (n,).

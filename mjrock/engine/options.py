@@ -55,7 +55,7 @@ class Options:
         keep(self, timestep=required_timestep(self.timestep, MUJOCO_STEP, self.duration))
         if self.timestep is None:
             samples = self.duration / (self.output_step or SPACING)
-            require_size("the samples of this answer", samples, "raise output_step or follow it for less")
+            require_size("the samples of this answer", samples, "raise output_step, or shorten the duration")
         else:
             steps = self.duration / self.timestep
             require_size("the steps of this run", steps, "take a longer timestep, or fitted steps")

@@ -81,7 +81,7 @@ def solve_compliant(
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.one_sided)
     count = intervals(case.duration, spacing)
     parts = intervals(case.duration / count, 1e-3 / wall.p)  # peaks and impacts are read off finer samples
-    require_size("the samples of this answer", count * parts, "follow it for less")
+    require_size("the samples of this answer", count * parts, "raise output_step, or shorten the duration")
     output = np.linspace(0.0, case.duration, count * parts + 1)
     sampled, history, evaluations, switches = _integrated(system, case, output, period, rtol, atol)
     motion = SampledMotion(history[:, None, :3], history[:, None, 3:6], system.energy(history))

@@ -70,8 +70,8 @@ def report(
         case: the wall or masonry and its effects, for the drawing and the inputs; or the corner or the wall that bends
             that is checked.
         responses: of walls of this size or of this masonry, by any solver, under any motions. A mapping gives those of
-            each variant, such as a wall without ties and with them, or of each mechanism by its name in `checks`. None,
-            `()`, for a report of checks alone.
+            each variant, such as a wall without ties and with them, or of each mechanism by its name in `checks`. An
+            empty `()` for a report of checks alone.
         path: where to, an .html, or a .pdf, which WeasyPrint makes.
         title: of the page; None is that of the language.
         labels: what each response is called, one for each; variants need none.
@@ -84,7 +84,7 @@ def report(
         language: "en" or "it". Texts of yours stay as they are. `mjrock/reporting/texts.toml` has all others.
         basis: what inputs rest on, by their names in the program, such as {"density": "3 cores, 2024", "k_base": "E of
             the mortar 800 MPa, 30 mm"}.
-        notes: the question, the building, who request.
+        notes: the question, the building, and who requests it.
         sections: further sections, by their headings: each a text, a figure, a result of `collapse_multiplier`,
             `limit_curve`, `push`, `pushover` or `design`, one that has a table, as those of `sensitivity` and
             `compare`, a mapping of names to `Fragility` curves, or some of these.
@@ -146,7 +146,7 @@ def report(
 
 
 class Request(NamedTuple):
-    """What a report is request for beside its checks.
+    """The request for a report, beside its checks.
 
     Args:
         case: the wall or masonry.

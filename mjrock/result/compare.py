@@ -165,7 +165,7 @@ class Comparison(NotebookPicture):
         return [{"impact": i + 1} | dict(zip(names, row, strict=True)) for i, row in enumerate(values)]
 
     def csv(self) -> str:
-        """The rows as CSV text; its columns have the names of the rows without commas, see `mjrock.files`."""
+        """The rows as CSV text; its columns have the names of the rows without commas, see `mjrock.contacts.files`."""
         rows = self.rows()
         if not rows:
             return "impact\n"

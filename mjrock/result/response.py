@@ -520,7 +520,10 @@ class Response(NotebookPicture):
             OSError: if the file cannot be written.
         """
         if not self.in_space:
-            raise ValueError("case = a wall or blocks in the plane, which have no such file; take Polyhedron.prism")
+            raise ValueError(
+                "a COMPAS model takes masonry in space; this response is of a wall, or of blocks in the plane, which "
+                "Polyhedron.prism makes bodies"
+            )
         case = self.of_masonry
         case.masonry.convex_in_space("a COMPAS model")
         k = sample_at(self.t, at)

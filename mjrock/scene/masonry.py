@@ -121,7 +121,7 @@ def require_carried(masonry: Masonry, effects: tuple[Effect, ...]) -> None:
 
 
 def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> ValueError:
-    """The message for masonry that stands as rigid blocks, but for which no pose of rest was found.
+    """The error for masonry that stands as rigid blocks, but for which no pose of rest was found.
 
     Args:
         masonry, effects: the masonry.

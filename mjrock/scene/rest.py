@@ -92,8 +92,8 @@ class UnsettledError(ValueError):
     def __init__(self, pose: Array) -> None:
         super().__init__(
             "the bodies do not stand on their contacts: no pose was found in which the springs carry weight and "
-            "forces. The valid range are contacts that are stiffer, or loads and thrusts whose line of action with the "
-            "weight runs nearer to the middle of the base"
+            "forces. Give stiffer contacts, or loads and thrusts whose line of action with the weight runs nearer to "
+            "the middle of the base"
         )
         self.pose = pose
 

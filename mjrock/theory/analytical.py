@@ -74,7 +74,7 @@ def solve_analytical(
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("e", e, Restitution, ScatteredRestitution)
     spacing = required_spacing(output_step, case.duration)
-    require_size("the samples of this answer", case.duration / spacing, "raise output_step or follow it for less")
+    require_size("the samples of this answer", case.duration / spacing, "raise output_step, or shorten the duration")
     _require_solvable(case, e)
     if unlike := e.doubt(case.wall, case.stop_top):
         warn_of(unlike, Implausible)

@@ -53,6 +53,14 @@ def room(name):
     return ".".join(parts[: 2 if parts[0] == "problem" else 1])
 
 
+def test_every_module_stands_in_the_list_of_folders():
+    table = (ROOT.parent / "docs" / "how_it_works.md").read_text("utf-8")
+    rows = dict(re.findall(r"^\| `([\w/]+)` \| .*? \| (.*) \|$", table, re.MULTILINE))
+    within = [path.relative_to(ROOT) for path in MODULES if path.parent != ROOT and not path.stem.startswith("_")]
+    unlisted = [path.as_posix() for path in within if f"`{path.stem}`" not in rows.get(path.parent.as_posix(), "")]
+    assert {Path(path).parent.as_posix() for path in unlisted} == {"commands", "examples"}
+
+
 @cache
 def imports(path):
     """Modules of the package that a module imports, by their text too, as names below it, and all others."""

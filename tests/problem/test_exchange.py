@@ -223,7 +223,7 @@ def test_arguments_are_checked(tmp_path):
         mr.Masonry.from_obj(path, scale=0)
     with pytest.raises(ValueError, match=r"none.obj: it is not a file"):
         mr.Masonry.from_obj(tmp_path / "none.obj")
-    with pytest.raises(ValueError, match="blocks in the plane have no such file"):
+    with pytest.raises(ValueError, match="blocks are in the plane, and"):
         mr.Masonry.stack([mr.Block(0.3, 1.0)], 1e8).to_obj(tmp_path / "a.obj")
 
 

@@ -263,8 +263,8 @@ def test_what_the_law_warns_of_has_the_name_of_the_joint():
         (lambda: mr.Masonry([GROUND, LEFT], friction=lambda joint: -1), r"friction of ground\|left = -1 is outside"),
         (lambda: mr.Masonry([GROUND, LEFT], xi=len), "xi = .* is not called as xi"),
         (lambda: mr.Masonry([GROUND, LEFT], frequency=9.0, law="CALIBRATED"), "frequency = 9 rad/s is given with a la"),
-        (lambda: mr.Masonry([GROUND, LEFT, RIGHT, TOP], law=mr.CALIBRATED), "law = is for stacks"),
-        (lambda: mr.Masonry.arch(5, 0.75, law=mr.CALIBRATED), "law = is for stacks"),
+        (lambda: mr.Masonry([GROUND, LEFT, RIGHT, TOP], law=mr.CALIBRATED), "law: damping by a law is for stacks"),
+        (lambda: mr.Masonry.arch(5, 0.75, law=mr.CALIBRATED), "law: damping by a law is for stacks"),
         (lambda: mr.Masonry([GROUND, LEFT], law="mine"), "law = 'mine' is not one of"),
         (lambda: mr.Masonry.stack([mr.Block(0.3, 2.1, inset=0.1)], 5e8), r"inset = 0.1 m; .* give Masonry a Polygon"),
         (

@@ -198,10 +198,12 @@ def test_what_masonry_in_space_refuses():
     blocks = [GROUND, box((1, 1, 1), (0, 0, 0.5))]
     with pytest.raises(TypeError, match=r"blocks\[2\] is a Polygon of the plane, and blocks\[0\]"):
         mr.Masonry([*blocks, mr.Polygon([(0, 0), (1, 0), (0, 1)])])
-    with pytest.raises(ValueError, match="law = is for stacks, where every block stands on one other block"):
+    with pytest.raises(
+        ValueError, match="law: damping by a law is for stacks, where every block stands on one other block"
+    ):
         mr.Masonry.facade(1.2, 0.8, 0.4, (0.4, 0.2), law="CALIBRATED")
     beside = mr.Polyhedron.box((0.5, 1.0, 4.0), (-0.55, 0.0, 2.0), fixed=True)
-    with pytest.raises(ValueError, match="law = in space is for stacks that stand free"):
+    with pytest.raises(ValueError, match="law: in space it is for stacks that stand free"):
         mr.Masonry([GROUND, box((0.6, 1, 4), (0, 0, 2)), beside], law="CALIBRATED")
     with pytest.raises(ValueError, match="points = 51 is outside the valid range 2 to 50"):
         mr.Masonry(blocks, points=51)

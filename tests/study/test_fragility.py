@@ -177,7 +177,7 @@ def test_resamples_that_have_no_curve_take_a_finite_one_and_are_counted():
         (
             np.arange(100) % 4,
             {},
-            "groups names 4 groups; the valid range is 5 or more: .* Run more records, or report the single",
+            "the number of groups is 4 .*; the valid range is 5 or more: .* Run more records, or report the single",
         ),
         (np.arange(100), {"resamples": 3}, "resamples = 3 is outside"),
         (np.arange(100), {"seed": -1}, "seed = -1 is outside"),

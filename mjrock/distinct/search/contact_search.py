@@ -7,9 +7,9 @@ at rest. A search gives each pair its places, with the law of `pair_law`. Where 
 stay soft as long as they press: if they were stiff and soft in turn, blocks would sink into each other. Until the next
 search each place moves with its body, and its normal with the other.
 
-The decrease of the energy of springs along normals in a search is booked, and their increase along faces; what they
-lose along faces friction takes. What their change of force does over the half of a step before the pose is booked too.
-The step before had other normals, so that what its forces did in its half before the pose is booked along those.
+A search books what springs along normals lose, and what springs along faces gain. What springs along faces lose counts
+as friction. It also books the work of the changed forces in the half of a step before the pose, along the old normals,
+since that half was stepped with them.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ NEWMARK = 0.25
 """Newmark's beta of the contacts: average acceleration, which is stable at every step [-]."""
 FRICTION_MASSES = 100.0
 """Inertia of a friction row of several bodies in masses of the body that it holds [-]. Under an acceleration a along
-its face a contact that sticks creeps at a h / HELD_MASSES. With ten times as much a step of thirty blocks takes 1.7
+its face a contact that sticks creeps at a h / FRICTION_MASSES. With ten times as much a step of thirty blocks takes 1.7
 times as long."""
 NOTHING = -2
 """The body of what is only seen."""
@@ -36,7 +36,8 @@ POINTS = 4
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Neighbours and others whose law is given, and last what any two others have, as if their inverse weight were one.
+    """Pairs of pieces that share a joint, then pairs whose law is given. The last row is the law of any other two, for
+    an inverse weight of one.
 
     Args:
         pieces: numbers of the two pieces of each pair, shape (p, 2).

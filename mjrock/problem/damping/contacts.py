@@ -310,12 +310,13 @@ class Contacts:
             friction, side_friction: coefficients as in `Interface` [-], 0 to 10.
 
         Raises:
-            ValueError: as `from_damping`, and what the law raises.
+            TypeError: for what is no law, or a law that does not give its numbers.
+            ValueError: as `from_damping`, for an `e.side` that is no rebound, and what the law raises.
 
         Warns:
-            UserWarning: what the law warns of; where it was fitted for another number of lines or another friction; and
-                one-sided where it was fitted in another code, as PUBLISHED was, or where the base is so soft that the
-                rebound of `e` lifts no edge.
+            UserWarning: what the law warns of; where it was fitted for another number of lines or another friction;
+                and, with a side stop, where it was fitted in another code, as PUBLISHED was, or where the base is so
+                soft that the rebound of `e` lifts no edge.
         """
         require_kind("wall", wall, Block)
         require_kind("e", e, Restitution)

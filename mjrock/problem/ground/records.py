@@ -293,7 +293,7 @@ UNEVEN_ROUNDED = 0.1
 SLOW_SAMPLING = 0.1
 """Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
 ALONE = 5.0
-"""A first number that is the largest, and `RATIO` times as large as those soon after it, is doubted: it may be one of
+"""A first number that is the largest, and this many times as large as those soon after it, is doubted: it may be one of
 the header."""
 SOON = 10
 """How many numbers those are."""

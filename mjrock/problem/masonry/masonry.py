@@ -565,7 +565,9 @@ class Masonry(Constructors, NotebookPicture):
             ValueError: with what takes them, if they are in the plane or not convex.
         """
         if not self.in_space:
-            raise ValueError("blocks = blocks in the plane have no such file; make them bodies with Polyhedron.prism")
+            raise ValueError(
+                f"blocks are in the plane, and {what} takes blocks in space; make them bodies with Polyhedron.prism"
+            )
         if compounds := [n for n, block in zip(self.names, self.blocks, strict=True) if isinstance(block, Compound)]:
             raise ValueError(f"blocks: {what} takes convex blocks, and {named(compounds)} has several parts")
         return [block for block in self.blocks if isinstance(block, Polyhedron)]

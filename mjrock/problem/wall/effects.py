@@ -162,7 +162,7 @@ class Thrust(Effect):
             length = math.hypot(*given)
             if not length > 1e-9:
                 name = f"direction of the thrust = {given}"
-                raise ValueError(f"{name} has no length; the valid range are vectors longer than 1e-9")
+                raise ValueError(f"{name} has no length; valid vectors are longer than 1e-9")
             keep(self, direction=(given[0] / length, given[1] / length, given[2] / length))
         super().__post_init__()
 

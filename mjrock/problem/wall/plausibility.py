@@ -105,7 +105,7 @@ def _of_motion(case: Any) -> list[str]:
     return of_motion(case.motion, case.duration, "wall", start if at_rest else math.inf)
 
 
-def of_motion(motion: GroundMotion | None, duration: float, called: str, start: float) -> list[str]:
+def of_motion(motion: GroundMotion | None, duration: float, label: str, start: float) -> list[str]:
     """What is odd about the record of a run of a duration [s].
 
     Args:
@@ -118,7 +118,7 @@ def of_motion(motion: GroundMotion | None, duration: float, called: str, start: 
     found, peak = [], motion.peak / GRAVITY
     if 0 < peak < FAINT_RECORD * start and start <= motion.peak <= IN_G:
         found.append(
-            f"the record peaks at {peak:.3g} g; this {called} starts to rock at {start:.3g} g: is the record in g? "
+            f"the record peaks at {peak:.3g} g; this {label} starts to rock at {start:.3g} g: is the record in g? "
             "Accelerations are in m/s2"
         )
     if duration < motion.duration:

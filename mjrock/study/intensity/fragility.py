@@ -309,8 +309,9 @@ def group_numbers(labels: NDArray[np.generic], least: int = FEWEST_GROUPS) -> tu
     names, group = np.unique(labels, return_inverse=True)
     if len(names) < least:
         raise ValueError(
-            f"groups names {len(names)} groups; the valid range is {least} or more: fewer give no interval that can be "
-            "trusted. Run more records, or report the single values and their range"
+            f"the number of groups is {len(names)} (without groups each value is one); the valid range is {least} or "
+            "more: fewer give no interval that can be trusted. Run more records, or report the single values and their "
+            "range"
         )
     return len(names), group
 

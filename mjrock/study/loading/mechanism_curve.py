@@ -107,7 +107,7 @@ class PartCurve(NamedTuple):
         """That of a limit curve.
 
         Raises:
-            ValueError: if it bears nothing or has been ended.
+            ValueError: if it has loads, has no mechanism, or bears nothing.
         """
         masonry, borne = curve.start.masonry, curve.multiplier
         if curve.start.loads:

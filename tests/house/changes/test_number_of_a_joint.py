@@ -33,8 +33,8 @@ EDITS = {
             'with the depth [N/m], at a depth [m]."""\n    return row.k * (1.0 + 2.0 * row.stiffening * depth)\n',
         ),
         (
-            'steps are short enough [N/m]."""\n    return row.k\n',
-            'steps are short enough [N/m]."""\n    return row.k * (1.0 + 2.0 * row.stiffening * 1e-3)\n',
+            'the largest depth for which the law holds."""\n    return row.k\n',
+            'the largest depth for which the law holds."""\n    return row.k * (1.0 + 2.0 * row.stiffening * 1e-3)\n',
         ),
         (
             "    return factor * depth\n",

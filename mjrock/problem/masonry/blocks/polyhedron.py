@@ -228,7 +228,7 @@ def checked_hull(vertices: ArrayLike | Sequence[Sequence[float]]) -> tuple[Hull,
     try:
         hull = hull_of(points)
     except ValueError as error:
-        raise ValueError(f"{error}; the valid range are the corners of a convex body") from None
+        raise ValueError(f"{error}; valid vertices are the corners of a convex body") from None
     deepest = int(hull.depth.argmax())
     if hull.depth[deepest] > DENTED * extent:
         raise ValueError(

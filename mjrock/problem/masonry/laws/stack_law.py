@@ -76,15 +76,17 @@ def damping_by_law(
     beds = [i for i, joint in enumerate(joints) if not is_side(blocks, joint)]
     parts = parts_above(blocks, [joints[i] for i in beds])
     if parts is None:
-        raise ValueError("law = is for stacks, where every block stands on one other block or on the ground; give xi")
+        raise ValueError(
+            "law: damping by a law is for stacks, where every block stands on one other block or on the ground; give xi"
+        )
     if len(beds) < len(joints) and isinstance(joints[0], SpaceJoint):
-        raise ValueError("law = in space is for stacks that stand free, with no fixed block beside them; give xi")
+        raise ValueError("law: in space it is for stacks that stand free, with no fixed block beside them; give xi")
     walls = {}
     for i, part in zip(beds, parts, strict=True):
         try:
             walls[i] = wall_of(blocks, joints[i], part)
         except ValueError as error:
-            raise ValueError(f"law = has no wall for the joint {joints[i].name}: {error}; give xi") from None
+            raise ValueError(f"law: there is no wall for the joint {joints[i].name}: {error}; give xi") from None
     under = {joints[i].above: i for i in beds}
     damping = np.empty((2, len(joints)))
     for i, joint in enumerate(joints):

@@ -137,7 +137,7 @@ def limit_of(
         loads: what acts on it.
         associated: whether sliding opens joints.
         ties: that hold the blocks, or None.
-        least: multiplier of associated friction that is looked for, below nothing where masonry is held back.
+        least: lower bound of the multiplier with associated friction [-], below zero where the masonry is held back.
 
     Raises:
         ValueError: if no state without dilatancy is found, or no multiplier from `least` on holds the masonry.
