@@ -92,8 +92,8 @@ class UnsettledError(ValueError):
     def __init__(self, pose: Array) -> None:
         super().__init__(
             "the bodies do not stand on their contacts: no pose was found in which the springs carry weight and "
-            "forces. Give stiffer contacts, or loads and thrusts whose line of action with the weight runs nearer to "
-            "the middle of the base"
+            "forces. The valid range is that of stiffer contacts, or of loads and thrusts whose line of action with "
+            "the weight runs nearer to the middle of the base"
         )
         self.pose = pose
 

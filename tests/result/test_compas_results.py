@@ -82,7 +82,7 @@ def test_shares_of_a_force_on_a_corner_and_outside_the_core():
 def test_without_forces_there_are_no_contacts_and_a_wall_has_no_file(answer, one_sided, e, tmp_path):
     bare = mr.solve_explicit(answer.case, output_step=0.1)
     assert contacts(bare.to_compas(tmp_path / "bare.json"))["edge_data"] == {}
-    with pytest.raises(ValueError, match="wall or blocks in the plane"):
+    with pytest.raises(ValueError, match="of a wall, or of blocks in the plane"):
         mr.solve_analytical(one_sided, e).to_compas(tmp_path / "wall.json")
     with pytest.raises(ValueError, match="at = 9"):
         answer.to_compas(tmp_path / "late.json", at=9.0)
