@@ -9,8 +9,8 @@ fails.
 
 # %%
 # One cycle of a strong motion acts on a wall in running bond. That it falls is
-# the same on every processor. When the first block falls, and where each of them
-# ends, depends on the last digit of a sum.
+# the same on every processor. When the first block falls, and where each of
+# them ends, depends on the last digit of a sum.
 import mjrock as mr
 from mjrock import plotting
 
