@@ -123,6 +123,23 @@ def test_it_goes_on_when_all_that_was_in_flight_is_done(tmp_path):
     assert len(table(path).splitlines()) == 51
 
 
+def test_in_one_process_each_task_of_an_iterator_has_run_before_the_next_is_taken(tmp_path):
+    """It may look at what came out; and where it breaks, no task that it has given is lost."""
+    known = []
+
+    def looking():
+        for task in squares(tmp_path, 20):
+            known.append(len(list(tmp_path.glob("done-*"))))
+            yield task
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError, match="no more"):
+        mr.campaign(looking(), tmp_path / "rows.sqlite", workers=1)
+    assert known == list(range(20))
+    with mr.Store(tmp_path / "rows.sqlite") as store:
+        assert len(store) == 20
+
+
 def test_a_failed_case_is_a_row(tmp_path):
     tasks = [Square(1), Square(-2), Square(3), Square(1)]
     path = mr.campaign(iter(tasks), tmp_path / "c.sqlite", workers=1)

@@ -152,7 +152,8 @@ def required_tasks(tasks: object) -> Iterable[Task]:
 def _carry_out(run: Runner, pending: Iterator[Job], executor: Executor | None, count: int) -> None:
     """Run the jobs where they are to run."""
     if executor is None and run.limit is None and count == 1:
-        while jobs := list(islice(pending, run.chunk())):
+        in_turn = run.progress.total is None  # an iterator may look at the rows before its next task
+        while jobs := list(islice(pending, 1 if in_turn else run.chunk())):
             run.here(jobs)
         return
     try:
