@@ -180,7 +180,7 @@ def cones(masonry: Masonry, friction: Array, tangents: tuple[Array, ...] | None 
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 
 
-def bonded(masonry: Masonry, tangents_given: tuple[Array, ...] | None = None) -> tuple[csc_array, Array, Array]:
+def bonded(masonry: Masonry, tangents: tuple[Array, ...] | None = None) -> tuple[csc_array, Array, Array]:
     """What bonds hold beyond the cones: pulls, and forces along the faces either way.
 
     In space the forces along a face fill a square about the circle of the cohesion.
@@ -189,7 +189,7 @@ def bonded(masonry: Masonry, tangents_given: tuple[Array, ...] | None = None) ->
         Generalised forces of unit forces, moments over the size of the block, shape (unknowns, n m), their limits [N],
         shape (n m,), and their directions, shape (n, m, d). None has a column where no joint has a bond.
     """
-    lines, tangents = masonry.lines, tangents_given or masonry.lines.tangents
+    lines, tangents = masonry.lines, tangents or masonry.lines.tangents
     directions = np.stack([-lines.normal, *(sign * direction for direction in tangents for sign in (1.0, -1.0))])
     if not any(masonry.bonds):
         return csc_array((len(masonry.free) * masonry.freedom.nv, 0)), np.zeros(0), directions[:0]
