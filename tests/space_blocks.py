@@ -7,10 +7,7 @@ import numpy as np
 import mjrock as mr
 from mjrock.distinct.assembly import copied
 from mjrock.distinct.kinds.actuators import Actuators
-from mjrock.distinct.kinds.constant_forces import ConstantForces
-from mjrock.distinct.kinds.dampers import Dampers
-from mjrock.distinct.kinds.lists import no_laws
-from mjrock.distinct.kinds.ties import Ties
+from mjrock.distinct.kinds.lists import KINDS, no_laws
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.supports import moving
@@ -36,9 +33,11 @@ def free_body(mass, inertia, spin):
     )
     none = {"lines": kind.line, "edges": kind.edge, "ways": kind.way}
     tables: dict = {name: rows(of, 0) for name, of in none.items()}
-    links = [kind(kind.table(3, 0)) for kind in (Ties, Dampers, ConstantForces)]
-    links.insert(2, Actuators(Actuators.table(3, 0), moving((), 1)))
-    tables |= {"links": tuple(links), "laws": no_laws(3), "guided": np.zeros(0, dtype=np.int64)}
+    links = tuple(
+        each(each.table(3, 0), *((moving((), 1),) if each is Actuators else ()))
+        for each in KINDS  # with one kind less the loop would be compiled anew
+    )
+    tables |= {"links": links, "laws": no_laws(3), "guided": np.zeros(0, dtype=np.int64)}
     return System(axes=SPACE.axes, bodies=body, ground=Ground.from_motions(None), supports=moving((), 3), **tables)
 
 
