@@ -21,6 +21,7 @@ def test_a_wall_that_leans_on_its_ties_is_lost():
     untied = [{"outcome": outcome, "peak_over_alpha": peak} for outcome, peak in rows]
     assert mr.lost([row | {"tie_0_force_N": 2e4} for row in untied]).tolist() == [True, False, True, False, False]
     assert mr.lost([row | {"tie_0_force_N": None} for row in untied]).tolist() == [True, False, False, False, False]
+    assert mr.lost([row | {"tie_stiffness": 1e6} for row in untied]).tolist() == [True] + 4 * [False]  # a label
     assert mr.lost([row | {"inwards_over_alpha": 1.1} for row in untied]).all()
     assert mr.lost([row | {"inwards_over_alpha": 0.9} for row in untied]).tolist() == [True] + 4 * [False]
     with pytest.raises(ValueError, match=r"rows\[0\] has outcome = None and peak_over_alpha = None: no result"):

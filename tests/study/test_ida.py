@@ -159,6 +159,13 @@ def build_column(scale):
     return mr.MasonryAnalysis(mr.MasonryCase(masonry, 1.5, motion=mr.GroundMotion.half_sine(scale, 0.6)))
 
 
+def test_walls_and_masonry_have_no_peaks_in_common(tmp_path, pulse):
+    """Those of walls are multiples of alpha, those of masonry rotations: a wall was missing from either column."""
+    with pytest.raises(ValueError, match="build makes walls and masonry, whose peaks have different units"):
+        mr.ida({"wall": pulse(), "masonry": build_column}, [0.5, 1.0], tmp_path / "ida.sqlite")
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.slow
 def test_masonry_is_taken_as_a_wall_is(tmp_path):
     found = mr.ida(build_column, [0.5, 2.0, 6.0], tmp_path / "ida.sqlite", workers=1)

@@ -94,6 +94,7 @@ def test_masonry_falls(tmp_path):
         motion = mr.GroundMotion.half_sine(amplitude, 0.5 * period)
         return mr.MasonryAnalysis(mr.MasonryCase(masonry, 1.5, motion=motion), solver="explicit")
 
+    mapped(of(ruled), tmp_path, [1.0], [0.1])  # its rows in the same store have impacts, those of masonry None
     found = mapped(build, tmp_path, [1.0, 5.0], [0.1, 1.0])
     np.testing.assert_array_equal(found.endings, [[0, 0], [0, 3]])
     assert np.isnan(found.lowest_without_impact).all()

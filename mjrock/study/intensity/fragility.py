@@ -6,6 +6,7 @@ It is fitted to runs that overturned or did not, or to the intensities that over
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -53,6 +54,8 @@ SPREAD = 0.9
 """Confidence at which the dispersions of a band have the interval of the dispersion."""
 OUTCOMES = frozenset(outcome.value for outcome in Outcome)
 """The outcomes that a row can have."""
+TIE_FORCE = re.compile(r"tie_\d+_force_N")
+"""The column of a row with the largest force of a tie. A label such as tie_stiffness is none."""
 
 
 @dataclass(frozen=True)
@@ -527,7 +530,7 @@ def lost(rows: Iterable[Row]) -> Flags:
             require_real(f"rows[{i}], {name}", row.get(name) or 0.0)
             for name in ("peak_over_alpha", "inwards_over_alpha")
         )
-        tied = any(str(name).startswith("tie_") and value is not None for name, value in row.items())
+        tied = any(TIE_FORCE.fullmatch(str(name)) and value is not None for name, value in row.items())
         leans = tied and outcome == Outcome.TIME_ENDED.value and peak >= 1.0
         found.append(outcome == Outcome.OVERTURNED.value or leans or inwards >= 1.0)
     return np.array(found, dtype=bool)

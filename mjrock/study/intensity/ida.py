@@ -124,7 +124,8 @@ def ida(
 
     Raises:
         TypeError: if `build` is not a function, or returns no `Analysis`.
-        ValueError: if the scales are none, negative or do not increase, or there are no records; and as `campaign`.
+        ValueError: if the scales are none, negative or do not increase, if there are no records, or some of walls and
+            some of masonry; and as `campaign`.
         RuntimeError: if a run has failed; its row in the store says how.
     """
     builds = builds_of(build)
@@ -134,6 +135,8 @@ def ida(
         for scale in levels.tolist():
             analysis = built(make, scale, f"build[{name!r}]" if isinstance(build, Mapping) else "build")
             tasks.append(replace(analysis, labels={"record": name, "scale": scale} | dict(analysis.labels)))
+    if len({analysis.PEAK for analysis in tasks}) > 1:
+        raise ValueError("build makes walls and masonry, whose peaks have different units; call ida for each kind")
     rows = completed(tasks, store, **options)
     table = tuple(tuple(rows[i : i + len(levels)]) for i in range(0, len(rows), len(levels)))
     peaks = np.array([[row[tasks[0].PEAK] for row in runs] for runs in table], dtype=float)

@@ -147,6 +147,7 @@ def overturning_map(
     rows = completed(tasks, store, **options)
     shape = (len(lengths), len(levels), -1)
     fell = np.reshape([row[task.PEAK] == math.inf for task, row in zip(tasks, rows, strict=True)], shape)
-    impacts = np.reshape([row.get("impacts", -1) for row in rows], shape)[:, :, 0]
+    counts = [row.get("impacts") for row in rows]  # None of masonry, also in a store with rows of walls
+    impacts = np.reshape([-1 if count is None else count for count in counts], shape)[:, :, 0]
     kinds = np.where(impacts < 0, FELL, np.where(impacts == 0, FELL_WITHOUT_IMPACT, FELL_AFTER_IMPACTS))
     return OverturningMap(lengths, levels, np.where(fell[:, :, 0], kinds, STOOD), fell.mean(axis=2))
