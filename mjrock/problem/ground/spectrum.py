@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,35 +47,70 @@ from .oscillator import (
 
 LEAST_ETA = 0.55
 """Least correction for damping [-], NTC 2018 equation 3.2.4 and EN 1998-1 equation 3.6."""
-SITE_NTC = {
-    "A": (1.00, 0.00, 1.00, 1.00, 1.00, 0.00, 4.5),
-    "B": (1.40, 0.40, 1.00, 1.20, 1.10, -0.20, 5.0),
-    "C": (1.70, 0.60, 1.00, 1.50, 1.05, -0.33, 6.0),
-    "D": (2.40, 1.50, 0.90, 1.80, 1.25, -0.50, 6.0),
-    "E": (2.00, 1.10, 1.00, 1.60, 1.15, -0.40, 6.0),
+
+
+class GroundNTC(NamedTuple):
+    """A ground type of NTC 2018.
+
+    Args:
+        intercept, slope, lowest, highest: of S_S = intercept - slope F_0 a_g/g, between two bounds [-], table 3.2.IV.
+        factor, power: of C_C = factor T_C*^power [-], table 3.2.IV.
+        TE: T_E [s], table 3.2.VII.
+    """
+
+    intercept: float
+    slope: float
+    lowest: float
+    highest: float
+    factor: float
+    power: float
+    TE: float
+
+    def soil_factor(self, F0: float, ag: float) -> float:
+        """S_S of a_g [m/s2] and F_0 [-]."""
+        return min(max(self.intercept - self.slope * F0 * ag / GRAVITY, self.lowest), self.highest)
+
+    def corner_period(self, Tc: float) -> float:
+        """T_C = C_C T_C* [s]."""
+        return float(self.factor * Tc**self.power * Tc)
+
+
+class GroundEC8(NamedTuple):
+    """A ground type of EN 1998-1:2004: S [-] and T_B, T_C, T_D [s], tables 3.2 and 3.3, recommended values; and T_E
+    [s], table A.1, which has it for type 1 alone."""
+
+    S: float
+    TB: float
+    TC: float
+    TD: float
+    TE: float
+
+
+GROUNDS_NTC = {
+    "A": GroundNTC(1.00, 0.00, 1.00, 1.00, 1.00, 0.00, 4.5),
+    "B": GroundNTC(1.40, 0.40, 1.00, 1.20, 1.10, -0.20, 5.0),
+    "C": GroundNTC(1.70, 0.60, 1.00, 1.50, 1.05, -0.33, 6.0),
+    "D": GroundNTC(2.40, 1.50, 0.90, 1.80, 1.25, -0.50, 6.0),
+    "E": GroundNTC(2.00, 1.10, 1.00, 1.60, 1.15, -0.40, 6.0),
 }
-"""S_S = first - second F_0 a_g/g between third and fourth, C_C = fifth T_C*^sixth, NTC 2018 table 3.2.IV; and T_E [s],
-table 3.2.VII."""
 TOPOGRAPHY_NTC = {"T1": 1.0, "T2": 1.2, "T3": 1.2, "T4": 1.4}
 """S_T [-], NTC 2018 table 3.2.V."""
-SITE_EC8 = {
+GROUNDS_EC8 = {
     "EC8 type 1": {
-        "A": (1.00, 0.15, 0.40, 2.0, 4.5),
-        "B": (1.20, 0.15, 0.50, 2.0, 5.0),
-        "C": (1.15, 0.20, 0.60, 2.0, 6.0),
-        "D": (1.35, 0.20, 0.80, 2.0, 6.0),
-        "E": (1.40, 0.15, 0.50, 2.0, 6.0),
+        "A": GroundEC8(1.00, 0.15, 0.40, 2.0, 4.5),
+        "B": GroundEC8(1.20, 0.15, 0.50, 2.0, 5.0),
+        "C": GroundEC8(1.15, 0.20, 0.60, 2.0, 6.0),
+        "D": GroundEC8(1.35, 0.20, 0.80, 2.0, 6.0),
+        "E": GroundEC8(1.40, 0.15, 0.50, 2.0, 6.0),
     },
     "EC8 type 2": {
-        "A": (1.00, 0.05, 0.25, 1.2, math.inf),
-        "B": (1.35, 0.05, 0.25, 1.2, math.inf),
-        "C": (1.50, 0.10, 0.25, 1.2, math.inf),
-        "D": (1.80, 0.10, 0.30, 1.2, math.inf),
-        "E": (1.60, 0.05, 0.25, 1.2, math.inf),
+        "A": GroundEC8(1.00, 0.05, 0.25, 1.2, math.inf),
+        "B": GroundEC8(1.35, 0.05, 0.25, 1.2, math.inf),
+        "C": GroundEC8(1.50, 0.10, 0.25, 1.2, math.inf),
+        "D": GroundEC8(1.80, 0.10, 0.30, 1.2, math.inf),
+        "E": GroundEC8(1.60, 0.05, 0.25, 1.2, math.inf),
     },
 }
-"""S, T_B, T_C, T_D [s], EN 1998-1:2004 tables 3.2 and 3.3, recommended values; and T_E [s], table A.1, which is
-given for type 1 alone."""
 FIRM = 10.0
 """T_F, beyond which the displacement is that of the ground [s]."""
 PLATEAU_FROM, PLATEAU_TO = 0.8, 1.1
@@ -320,10 +355,10 @@ SpectrumOfCode = CodeSpectrum | FloorSpectrum | PointSpectrum
 
 @within_ranges
 def code_spectrum(
-    code: Annotated[str, OneOf(("NTC 2018", *SITE_EC8))],
+    code: Annotated[str, OneOf(("NTC 2018", *GROUNDS_EC8))],
     *,
     ag: PeakOnRock,
-    soil: Annotated[str, OneOf(SITE_NTC)],
+    soil: Annotated[str, OneOf(GROUNDS_NTC)],
     F0: Annotated[float | None, Within(2, 4)] = None,
     Tc: PeriodOnRock = None,
     topography: Annotated[str, OneOf(TOPOGRAPHY_NTC)] = "T1",
@@ -364,32 +399,31 @@ def code_spectrum(
         >>> round(float(spectrum(0.3, 0.05)), 2)
         6.0
     """
-    require_one_of("code", code, ("NTC 2018", *SITE_EC8))
-    require_one_of("soil", soil, SITE_NTC)
+    require_one_of("code", code, ("NTC 2018", *GROUNDS_EC8))
+    require_one_of("soil", soil, GROUNDS_NTC)
     require_one_of("topography", topography, TOPOGRAPHY_NTC)
     if ag < PROBABLY_IN_G:
         warn_of(f"ag = {ag:g} m/s2 is {ag / GRAVITY:.3g} g; accelerations are in m/s2: is it in g?", Implausible)
-    if code in SITE_EC8:
+    if code in GROUNDS_EC8:
         for name, value in (("F0", F0), ("Tc", Tc)):
             if value is not None:
                 raise ValueError(f"{name} = {spelt(value)} is of NTC 2018; {code} takes ag and soil")
         if topography != "T1":
             raise ValueError(f"topography = {topography} is of NTC 2018; multiply ag for {code}")
-        recommended, national = SITE_EC8[code][soil], (S, TB, TC, TD)
-        own = [given or usual for given, usual in zip(national, recommended, strict=False)]
-        if not own[1] < own[2] < own[3]:
-            raise ValueError(f"TB, TC, TD = {own[1]:g}, {own[2]:g}, {own[3]:g} s do not increase")
-        return CodeSpectrum(code, ag, own[0], 2.5, own[1], own[2], own[3], recommended[4], damping, soil)
+        annex = {"S": S, "TB": TB, "TC": TC, "TD": TD}
+        site = GROUNDS_EC8[code][soil]._replace(**{name: value for name, value in annex.items() if value is not None})
+        if not site.TB < site.TC < site.TD:
+            raise ValueError(f"TB, TC, TD = {site.TB:g}, {site.TC:g}, {site.TD:g} s do not increase")
+        return CodeSpectrum(code, ag, **site._asdict(), amplification=2.5, damping=damping, soil=soil)
     for name, value in (("S", S), ("TB", TB), ("TC", TC), ("TD", TD)):
         if value is not None:
             raise ValueError(f"{name} = {spelt(value)} is of a national annex of EC8; NTC 2018 takes soil, F0 and Tc")
     if F0 is None or Tc is None:
         raise ValueError(f"{'Tc' if F0 else 'F0'} is missing: NTC 2018 takes ag, F0 and Tc of the limit state")
-    first, second, least, most, factor, power, TE = SITE_NTC[soil]
-    S = min(max(first - second * F0 * ag / GRAVITY, least), most) * TOPOGRAPHY_NTC[topography]
-    TC = factor * Tc**power * Tc
-    periods = TC / 3, TC, 4.0 * ag / GRAVITY + 1.6, TE
-    return CodeSpectrum(code, ag, S, F0, *periods, damping, soil, topography, Tc)
+    ground = GROUNDS_NTC[soil]
+    S = ground.soil_factor(F0, ag) * TOPOGRAPHY_NTC[topography]
+    TC, TD = ground.corner_period(Tc), 4.0 * ag / GRAVITY + 1.6
+    return CodeSpectrum(code, ag, S, F0, TC / 3, TC, TD, ground.TE, damping, soil, topography, Tc)
 
 
 @within_ranges

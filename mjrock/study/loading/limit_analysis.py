@@ -48,19 +48,20 @@ from .pushover import falls_to_zero
 
 WEAKER = 1e-6
 """How much less is borne the other way for a warning, more than limit analysis rounds [-]."""
-NOTHING, BORNE = 1e-6, 1e-3
+ZERO_MULTIPLIER, BORNE_MULTIPLIER = 1e-6, 1e-3
 """Multiplier that counts as none, and that of associated friction from which something is borne [-]."""
-STAYS = 1e-6
+CLOSED_RATE = 1e-6
 """Rate below which a line neither opens nor slides, over the largest of the mechanism [-]."""
-ROUNDED, TURNS = 1e-12, 20
-"""What lines that stay may miss, over the size of the masonry [-], and most turns of the search for it."""
-PRESSED = 1e-6
+PROJECTION_TOLERANCE, MOST_PROJECTIONS = 1e-12, 20
+"""Tolerated gap or slip of lines that stay closed, over the size of the masonry [-], and most iterations of the
+projection that closes it."""
+UNPRESSED = 1e-6
 """Normal force of a joint that counts as none, over the largest [-]."""
-BEHIND = 0.1
+CLOSING_OVERLAP = 0.1
 """How far a line that closes may lie behind its face, over the tolerance of the masonry [-]."""
-TANGENT, FARTHER = 1e-4, 10
-"""Displacement at which the fall of a curve is looked at first, over the size of the masonry, and how many times the
-steps that are expected a curve may take until nothing is borne any more [-]."""
+TANGENT_STEP, STEPS_ALLOWED = 1e-4, 10
+"""Displacement over which the initial slope of a curve is taken, over the size of the masonry [-], and most steps of a
+curve until nothing is borne any more, over those that are expected [-]."""
 InPlan = Annotated[float | None, Within(-2 * math.pi, 2 * math.pi, "rad", "angle")]
 """Angle of a direction in plan, from x towards y."""
 Loads = Mapping[str, ArrayLike] | Sequence[Thrust | Load] | Thrust | Load
@@ -69,8 +70,8 @@ GROWING: tuple[type[Thrust | Load], ...] = (Thrust, Load)
 """Effects that may grow."""
 MOVED = "moved by"
 """How the reason begins why a curve ends at the displacement to which it was to go."""
-HALVINGS = 40
-"""How often a step is halved at most in the search for where a line closes."""
+BISECTIONS = 40
+"""Bisections of a step in the search for where a line closes."""
 
 
 @within_ranges
@@ -154,56 +155,56 @@ def collapse_multiplier(
     """
     require_kind("masonry", masonry, Masonry, Case)
     if isinstance(masonry, Case):
-        _require_alone(angle=angle, associated=None if associated else False, effects=effects or None, pose=pose)
+        _require_absent(angle=angle, associated=None if associated else False, effects=effects or None, pose=pose)
         return overturned(masonry, direction, loads)
     dilates = require_flag("associated", associated)
     if not dilates:
         masonry.require_dry("collapse_multiplier without dilatancy")
-    given, growing = _required(masonry, effects), _growing(masonry, loads)
-    laws = [link.law for link in link_effects(given).values()]
+    constant_effects, growing = _required(masonry, effects), _growing(masonry, loads)
+    laws = [link.law for link in link_effects(constant_effects).values()]
     if pose is not None:
         masonry.require_dry("collapse_multiplier in a pose")
         if not dilates:
             raise ValueError("associated = False goes with masonry at rest; a pose takes associated friction")
-        still, (masonry, given) = masonry, posed(masonry, pose, given)
-        growing = posed(still, pose, growing)[1] if isinstance(growing, tuple) else growing
-    none = direction is None and angle is None
-    push = np.zeros(3 if masonry.in_space else 2) if none else horizontal(masonry, direction, angle)
-    grown = _forces(masonry, growing) + pushed(masonry, push) + inertia_of_added_masses(masonry, given, push)
+        at_rest_masonry, (masonry, constant_effects) = masonry, posed(masonry, pose, constant_effects)
+        growing = posed(at_rest_masonry, pose, growing)[1] if isinstance(growing, tuple) else growing
+    without_push = direction is None and angle is None
+    push = np.zeros(3 if masonry.in_space else 2) if without_push else horizontal(masonry, direction, angle)
+    grown = _forces(masonry, growing) + pushed(masonry, push)
+    grown += inertia_of_added_masses(masonry, constant_effects, push)
     if not grown.any():
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
-    links = tuple(link_effects(given).values())
-    spans, constant = [link.span for link in links], applied(masonry, given)
+    links = tuple(link_effects(constant_effects).values())
+    spans, constant = [link.span for link in links], applied(masonry, constant_effects)
     strength = np.array([law.pulls_at(span) for law, span in zip(laws, spans, strict=True)])
     ties = Pulls.from_forces(masonry, pulls_of(masonry, links), strength)
     loads_at_limit = LimitLoads(push, grown, constant)
     if pose is not None:
         return limit_of(masonry, loads_at_limit, ties=ties, least=-math.inf)
-    falls = falling(masonry, constant, ties)
-    if falls:
-        under = "the weight and the effects" if given else "the weight"
+    if falls := falling(masonry, constant, ties):
+        under = "the weight and the effects" if constant_effects else "the weight"
         raise ValueError(f"the masonry cannot stand: {named(falls)} would fall under {under}")
-    found = limit_of(masonry, loads_at_limit, associated=dilates, ties=ties)
-    found = replace(found, wedged=wedged(masonry, given), loads=growing, effects=given)
-    if found.wedged:
+    collapse = limit_of(masonry, loads_at_limit, associated=dilates, ties=ties)
+    collapse = replace(collapse, wedged=wedged(masonry, constant_effects), loads=growing, effects=constant_effects)
+    if collapse.wedged:
         warn_of(
-            f"{named(found.wedged)} would stand only by wedging, and slide down from joints that nothing presses "
+            f"{named(collapse.wedged)} would stand only by wedging, and slide down from joints that nothing presses "
             "together; the multiplier is that of blocks that are wedged",
             Implausible,
         )
-    if not dilates and (turning := _turning(found, loads_at_limit, ties)):
+    if not dilates and (twisting := _twisting(collapse, loads_at_limit, ties)):
         warn_of(
-            f"multiplier = {abs(found.multiplier):.1g}: {named(turning)} turn about their normals without friction, "
-            "since rigid faces let normal forces gather in a point; give points = 2, or associated=True for an upper "
-            "bound",
+            f"multiplier = {abs(collapse.multiplier):.1g}: {named(twisting)} turn about their normals without "
+            "friction, since rigid faces let normal forces gather in a point; give points = 2, or associated=True for "
+            "an upper bound",
             Implausible,
         )
-    return found
+    return collapse
 
 
-def _require_alone(**given: object) -> None:
+def _require_absent(**arguments: object) -> None:
     """Raise a ValueError for arguments that the wall of a case has no place for."""
-    if names := [name for name, value in given.items() if value is not None]:
+    if names := [name for name, value in arguments.items() if value is not None]:
         raise ValueError(f"{named(names)} is for masonry of blocks; a Case has its effects, and rocks in its plane")
 
 
@@ -214,50 +215,64 @@ def overturned(case: Case, direction: object, loads: object) -> Collapse:
         raise ValueError(f"direction = {sense:g} is not a direction; the valid ones are 1, -1 and None")
     grown = required_effects("loads", () if loads is None else loads, GROWING, "Thrust, Load or a sequence of them")
     wall, top = case.wall, 2 * case.wall.h * (1 + 1e-12)
-    forces = [(0.0, wall.centroid_height, sense * wall.weight, 0.0)]
+    forces = [WallForce(0.0, wall.centroid_height, sense * wall.weight, 0.0)]
     for i, load in enumerate(grown):
         require_within(f"loads[{i}], height", load.height, 0.0, top, "m")
-        across, _, up = load.force_vector
-        forces.append((load.offset, load.height, across, -up))
-    found = _overturning(case, forces)
-    if found is None:
+        outwards, _, up = load.force_vector
+        forces.append(WallForce(load.offset, load.height, outwards, -up))
+    mode = _overturning(case, forces)
+    if mode is None:
         raise ValueError("direction = None needs loads that grow with the multiplier, and there are none")
     if not case.one_sided:
-        _warn_of_other_direction(case, forces, found.factor)
+        _warn_of_other_direction(case, forces, mode.factor)
     acting: dict[str, Any] = {"loads": grown, "effects": case.effects, "case": case}
-    if found.factor == math.inf:
+    if mode.factor == math.inf:
         return Collapse(math.inf, np.array([sense, 0.0]), (), np.zeros((1, 3)), **acting)
-    motion = found.side * wall.weight / found.moment * wall.turning(0.0, found.side)
-    return Collapse(found.factor, np.array([sense, 0.0]), ("wall",), np.atleast_2d(motion), **acting)
+    motion = mode.side * wall.weight / mode.moment * wall.turning(0.0, mode.side)
+    return Collapse(mode.factor, np.array([sense, 0.0]), ("wall",), np.atleast_2d(motion), **acting)
 
 
-class _Overturning(NamedTuple):
-    """How forces that grow overturn a wall: the factor on them [-], the side of the edge, 1 outwards and -1 inwards,
-    and their moment about it [N m]. The factor is infinite where they overturn it to no side."""
+class WallForce(NamedTuple):
+    """A force on a wall at rest: the place at which it acts, x from the middle of the base [m] and z [m], and its
+    components [N]."""
+
+    x: float
+    z: float
+    outwards: float
+    downwards: float
+
+
+class OverturningMode(NamedTuple):
+    """How forces that grow overturn a wall.
+
+    Args:
+        factor: on the forces [-], infinite where they overturn it about no edge.
+        side: of the edge, 1 outwards and -1 inwards.
+        moment: of the forces about the edge [N m].
+    """
 
     factor: float
     side: float = 1.0
     moment: float = 1.0
 
 
-def _overturning(case: Case, forces: Sequence[tuple[float, float, float, float]]) -> _Overturning | None:
-    """How forces overturn the wall of a case, each given by its place x, z [m] and its parts outwards and downwards
-    [N]; None where they have no moment about its edges."""
-    held = {1.0: case.restoring.outer.P + moment_at_strength(case.pulls)}
+def _overturning(case: Case, forces: Sequence[WallForce]) -> OverturningMode | None:
+    """How forces overturn the wall of a case at the lowest factor; None where they have no moment about its edges."""
+    restoring = {1.0: case.restoring.outer.P + moment_at_strength(case.pulls)}
     if not case.one_sided:
-        held[-1.0] = case.restoring.inner.P
-    edge = case.wall.half_base
-    over = {side: -sum(of_force(*force, edge).towards(side).P for force in forces) for side in held}
-    if not any(over.values()):
+        restoring[-1.0] = case.restoring.inner.P
+    half_base = case.wall.half_base
+    driving = {side: -sum(of_force(*force, half_base).towards(side).P for force in forces) for side in restoring}
+    if not any(driving.values()):
         return None
-    found = [_Overturning(held[side] / moment, side, moment) for side, moment in over.items() if moment > 0]
-    return min(found, default=_Overturning(math.inf))
+    modes = [OverturningMode(restoring[side] / moment, side, moment) for side, moment in driving.items() if moment > 0]
+    return min(modes, default=OverturningMode(math.inf))
 
 
-def _warn_of_other_direction(case: Case, forces: Sequence[tuple[float, float, float, float]], factor: float) -> None:
+def _warn_of_other_direction(case: Case, forces: Sequence[WallForce], factor: float) -> None:
     """Warn where horizontal forces overturn a wall that is free both ways at a lower factor when they push the other
     way."""
-    other = _overturning(case, [(x, z, -across, down) for x, z, across, down in forces])
+    other = _overturning(case, [force._replace(outwards=-force.outwards) for force in forces])
     if other is not None and other.factor < (1 - WEAKER) * factor:
         warn_of(
             f"the wall has side_stop=False, and {factor:.4g} times the forces that grow overturn it; where they push "
@@ -269,8 +284,8 @@ def _warn_of_other_direction(case: Case, forces: Sequence[tuple[float, float, fl
 
 def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Effect, ...]:
     """Effects as a case of the masonry takes them. An error names one whose force the motion alone decides."""
-    given = MasonryCase(masonry, 1.0, effects=effects, settled=False).effects  # type: ignore[arg-type]
-    for i, effect in enumerate(given):
+    constant_effects = MasonryCase(masonry, 1.0, effects=effects, settled=False).effects  # type: ignore[arg-type]
+    for i, effect in enumerate(constant_effects):
         links = link_effects([effect]).values()
         if effect.force_vector is None and not effect.mass_added and not any(link.law.holds for link in links):
             raise TypeError(
@@ -284,21 +299,23 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Eff
                     f"effects[{i}], slack = {slack:g} m: the tie holds nothing as the masonry begins to move; the "
                     "valid value is 0"
                 )
-    return given
+    return constant_effects
 
 
-def _turning(found: Collapse, loads: LimitLoads, ties: Pulls) -> tuple[str, ...]:
-    """Names of joints that press and turn about their normals in a mechanism of no multiplier, where only that is why:
-    associated friction, which has corners of the faces press, bears something."""
-    masonry = found.masonry
-    if masonry is None or not masonry.in_space or found.forces is None or abs(found.multiplier) > NOTHING:
+def _twisting(collapse: Collapse, loads: LimitLoads, ties: Pulls) -> tuple[str, ...]:
+    """Names of joints whose twist alone makes the multiplier zero: they press, and turn about their normals.
+
+    With associated friction, where corners of the faces press, something is borne then.
+    """
+    masonry, forces = collapse.masonry, collapse.forces
+    if masonry is None or not masonry.in_space or forces is None or abs(collapse.multiplier) > ZERO_MULTIPLIER:
         return ()
-    if limit_of(masonry, loads, ties=ties).multiplier < BORNE:
+    if limit_of(masonry, loads, ties=ties).multiplier < BORNE_MULTIPLIER:
         return ()
     count, lines = len(masonry.joints), masonry.lines
-    rates = np.abs(mean_slip_rates(masonry.blocks, lines, count) @ found.motion.ravel()).reshape(3, count)
+    rates = np.abs(mean_slip_rates(masonry.blocks, lines, count) @ collapse.motion.ravel()).reshape(3, count)
     widths = np.array([joint.width for joint in masonry.joints])
-    twists = (found.forces.normal > 0) & (masonry.joint_friction > 0) & (rates[2] * widths > MOVES * rates.max())
+    twists = (forces.normal > 0) & (masonry.joint_friction > 0) & (rates[2] * widths > MOVES * rates.max())
     return tuple(joint.name for joint, twisted in zip(masonry.joints, twists, strict=True) if twisted)
 
 
@@ -319,9 +336,9 @@ def _growing(masonry: Masonry, loads: object) -> Mapping[str, tuple[float, ...]]
         if name not in free:
             raise ValueError(f"loads: {name!r} is not the name of a free block; those are {named(free)}")
         takes = f"an array of the shape ({forces},) or ({full},); a Thrust or Load has a block of its own"
-        given = require_reals(f"loads of {name}", load, takes)
-        shape = given.shape if given.shape == (forces,) else (full,)
-        rows[name] = tuple(require_array(f"loads of {name}", given, shape).tolist())
+        values = require_reals(f"loads of {name}", load, takes)
+        shape = values.shape if values.shape == (forces,) else (full,)
+        rows[name] = tuple(require_array(f"loads of {name}", values, shape).tolist())
     return rows
 
 
@@ -341,20 +358,20 @@ def horizontal(masonry: Masonry, direction: float | ArrayLike | None, angle: InP
     Raises:
         TypeError, ValueError: for what is no direction, with its name.
     """
-    given = require_reals(name, 1.0 if direction is None else direction, "1, -1 or a vector in plan of the shape (2,)")
-    if given.shape == () and abs(float(given)) == 1:
-        given = np.array([float(given), 0.0])
-    elif given.shape != (2,) or not masonry.in_space:
+    vector = require_reals(name, 1.0 if direction is None else direction, "1, -1 or a vector in plan of the shape (2,)")
+    if vector.shape == () and abs(float(vector)) == 1:
+        vector = np.array([float(vector), 0.0])
+    elif vector.shape != (2,) or not masonry.in_space:
         valid = "1 or -1" + (", or a vector in plan of the shape (2,)" if masonry.in_space else "")
         raise ValueError(f"{name} = {shown(direction)} is not a direction; the valid ones are {valid}")
-    length = float(np.hypot(*given))
+    length = float(np.hypot(*vector))
     if not 1e-9 < length < math.inf:
         raise ValueError(f"{name} = {shown(direction)} has a length of {length:g}; it is above 1e-9 and finite")
     if angle is not None:
         if not masonry.in_space:
             raise ValueError(f"angle = {shown(angle)} is for masonry in space; in the plane give {name} = 1 or -1")
         return np.array([math.cos(angle), math.sin(angle), 0.0])
-    return np.append(given / length, 0.0) if masonry.in_space else given
+    return np.append(vector / length, 0.0) if masonry.in_space else vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -401,9 +418,9 @@ class LimitCurve:
             if link.law.holds and self.start.masonry is not None:
                 spans, law = spans_in(self.start.masonry, link, self.pose), link.law
                 limit = law.reach + law.strength / law.k
-                for found, length in ((yielding, limit), (breaking, limit + law.ultimate)):
+                for displacements, length in ((yielding, limit), (breaking, limit + law.ultimate)):
                     if (spans > length).any():
-                        found[name] = falls_to_zero(self.displacement, length - spans)
+                        displacements[name] = falls_to_zero(self.displacement, length - spans)
         return yielding, breaking
 
 
@@ -449,58 +466,58 @@ def limit_curve(
     """
     require_kind("masonry", masonry, Masonry)
     masonry.require_dry("limit_curve")
-    given = _required(masonry, effects)
-    push = partial(collapse_multiplier, masonry, direction, angle=angle, loads=loads, effects=given)
-    start = found = push()
+    constant_effects = _required(masonry, effects)
+    push = partial(collapse_multiplier, masonry, direction, angle=angle, loads=loads, effects=constant_effects)
+    start = collapse = push()
     path = Path.from_collapse(masonry, start)
     if to is None:
-        step = path.reach(start, push) / poses
-        to, most = math.inf, FARTHER * poses
+        step = path.expected_length(start, push) / poses
+        to, most = math.inf, STEPS_ALLOWED * poses
     else:
         step, most = to / poses, poses
-    curve = [(0.0, found.multiplier, path.rest)]
+    curve = [(0.0, collapse.multiplier, path.rest)]
     while True:
         d, multiplier, pose = curve[-1]
-        if ended := _ended(d, multiplier, to, found):
+        if ended := _ended(d, multiplier, to, collapse):
             break
-        stay = path.staying(pose, found)
-        if slides := path.sliding(found, stay):
+        closed = path.closed_lines(pose, collapse)
+        if slides := path.sliding(collapse, closed):
             ended = f"{named(slides)} slide"
             break
-        pose = path.further(pose, found, stay, min(step, to - d))
-        if path.gone(pose) - d < ROUNDED * path.size:
+        pose = path.advanced(pose, collapse, closed, min(step, to - d))
+        if path.travel(pose) - d < PROJECTION_TOLERANCE * path.size:
             ended = "locks"
             break
         if len(curve) > most + len(path.pair):
             ended = "lines close again and again"
             break
         try:
-            found = push(pose=pose)
+            collapse = push(pose=pose)
         except UnbalancedError:
             ended = "another joint begins to open"
             break
         except ValueError as error:
             ended = str(error)
             break
-        curve.append((path.gone(pose), found.multiplier, pose))
-    displacement, multipliers, gone = zip(*curve, strict=True)
-    return LimitCurve(np.array(displacement), np.array(multipliers), np.array(gone), ended, start, given)
+        curve.append((path.travel(pose), collapse.multiplier, pose))
+    displacement, multipliers, followed = zip(*curve, strict=True)
+    return LimitCurve(np.array(displacement), np.array(multipliers), np.array(followed), ended, start, constant_effects)
 
 
-def _ended(d: float, multiplier: float, to: float, found: Collapse) -> str:
+def _ended(d: float, multiplier: float, to: float, collapse: Collapse) -> str:
     """Why a curve ends at a pose, or nothing."""
-    if not found.moving:
+    if not collapse.moving:
         return "nothing gives way"
     if multiplier <= 0:
         return "goes on by itself"
     return f"{MOVED} {1e3 * to:.4g} mm" if d >= to * (1 - 1e-9) else ""
 
 
-class Stay(NamedTuple):
-    """Which closed lines do not open in a mechanism, which of them do not slide, and which closed lines slide, shape
-    (m,) each."""
+class ClosedLines(NamedTuple):
+    """The closed lines of a pose in a mechanism, shape (m,) each: those that do not open, those of them that do not
+    slide either, and all that slide."""
 
-    closed: Flags
+    still: Flags
     stuck: Flags
     slides: Flags
 
@@ -537,24 +554,24 @@ class Path(NamedTuple):
         freedom = SPACE if self.masonry.in_space else PLANE
         return at_rest(len(self.share), freedom).reshape(len(self.share), -1)
 
-    def gone(self, pose: Array) -> float:
-        """How far the forces that grow have gone along themselves [m]."""
+    def travel(self, pose: Array) -> float:
+        """Displacement along the forces that grow, by their work [m]."""
         turned = 2 * pose[:, 4:] if self.masonry.in_space else pose[:, 2:]
         d = 3 if self.masonry.in_space else 2
         return float((self.share * np.concatenate([pose[:, :d], turned], axis=1)).sum())
 
-    def reach(self, found: Collapse, push: Callable[..., Collapse]) -> float:
+    def expected_length(self, collapse: Collapse, push: Callable[..., Collapse]) -> float:
         """About how far it goes until nothing is borne any more [m]: along the tangent of the curve at rest, or the
         size of the masonry where it does not fall."""
-        if not found.moving:
+        if not collapse.moving:
             return self.size
-        pose = self.further(self.rest, found, self.staying(self.rest, found), TANGENT * self.size)
+        pose = self.advanced(self.rest, collapse, self.closed_lines(self.rest, collapse), TANGENT_STEP * self.size)
         try:
             after = push(pose=pose).multiplier
         except ValueError:
             return self.size
-        fall = (found.multiplier - after) / self.gone(pose)
-        return min(found.multiplier / fall, self.size) if fall > 0 else self.size
+        fall = (collapse.multiplier - after) / self.travel(pose)
+        return min(collapse.multiplier / fall, self.size) if fall > 0 else self.size
 
     def rates(self, moves: Moves, directions: Array) -> csr_array:
         """Rates at which lines move apart in directions of their faces at rest, for unit velocities, (m, unknowns)."""
@@ -562,60 +579,60 @@ class Path(NamedTuple):
         arms = at - moves.place[lines.body], at - moves.place[lines.face]
         return rates_of(self.pair, arms, moves.turned(lines.face, directions), len(self.share))
 
-    def staying(self, pose: Array, found: Collapse) -> Stay:
-        """Which lines stay in a mechanism."""
-        moves, lines, velocity = Moves.from_pose(self.masonry, pose), self.masonry.lines, found.motion.ravel()
+    def closed_lines(self, pose: Array, collapse: Collapse) -> ClosedLines:
+        """What the closed lines of a pose do in a mechanism."""
+        moves, lines, velocity = Moves.from_pose(self.masonry, pose), self.masonry.lines, collapse.motion.ravel()
         closed = gaps_of(lines, moves)[2] <= self.masonry.tolerance
         normal = self.rates(moves, lines.normal) @ velocity
         along = np.hypot.reduce([self.rates(moves, tangent) @ velocity for tangent in lines.tangents])
-        least = STAYS * max(float(np.abs(normal[closed]).max(initial=0.0)), float(np.abs(velocity).max()))
+        least = CLOSED_RATE * max(float(np.abs(normal[closed]).max(initial=0.0)), float(np.abs(velocity).max()))
         still = closed & (np.abs(normal) <= least)
-        return Stay(still, still & (along <= least), closed & (along > STAYS * np.abs(velocity).max()))
+        return ClosedLines(still, still & (along <= least), closed & (along > CLOSED_RATE * np.abs(velocity).max()))
 
-    def sliding(self, found: Collapse, stay: Stay) -> list[str]:
+    def sliding(self, collapse: Collapse, closed: ClosedLines) -> list[str]:
         """Names of the joints that press, rub and slide at each line that does not open, or at all that do."""
-        if found.forces is None:
+        if collapse.forces is None:
             return []
-        joints, normal = range(len(self.masonry.joints)), found.forces.normal
-        rub = (normal > PRESSED * normal.max()) & (self.masonry.joint_friction > 0)
-        slide, stick = (np.isin(joints, self.masonry.lines.joint[which]) for which in (stay.slides, stay.stuck))
+        joints, normal = range(len(self.masonry.joints)), collapse.forces.normal
+        rub = (normal > UNPRESSED * normal.max()) & (self.masonry.joint_friction > 0)
+        slide, stick = (np.isin(joints, self.masonry.lines.joint[which]) for which in (closed.slides, closed.stuck))
         return [self.masonry.joints[number].name for number in np.flatnonzero(rub & slide & ~stick)]
 
-    def further(self, pose: Array, found: Collapse, stay: Stay, step: float) -> Array:
+    def advanced(self, pose: Array, collapse: Collapse, closed: ClosedLines, step: float) -> Array:
         """The pose a step further [m], or up to where a line closes."""
-        speed = float((self.share * found.motion).sum())
-        low, high = 0.0, step / max(speed, ROUNDED)
-        after = self.projected(pose, found.motion * high, stay)
-        if not self.closes(pose, after, stay):
+        speed = float((self.share * collapse.motion).sum())
+        low, high = 0.0, step / max(speed, PROJECTION_TOLERANCE)
+        after = self.projected(pose, collapse.motion * high, closed)
+        if not self.closes(pose, after, closed):
             return after
         best = pose
-        for _ in range(HALVINGS):
+        for _ in range(BISECTIONS):
             middle = 0.5 * (low + high)
-            after = self.projected(pose, found.motion * middle, stay)
-            if self.closes(pose, after, stay):
+            after = self.projected(pose, collapse.motion * middle, closed)
+            if self.closes(pose, after, closed):
                 high = middle
             else:
                 low, best = middle, after
         return best
 
-    def closes(self, before: Array, after: Array, stay: Stay) -> bool:
-        """Whether a line that does not stay has gone behind its face, farther than it was."""
+    def closes(self, before: Array, after: Array, closed: ClosedLines) -> bool:
+        """Whether a line other than those that stay closed has gone behind its face, farther than it was."""
         gap, was = (gaps_of(self.masonry.lines, Moves.from_pose(self.masonry, pose))[2] for pose in (after, before))
-        return bool((gap < np.minimum(was, 0.0) - BEHIND * self.masonry.tolerance)[~stay.closed].any())
+        return bool((gap < np.minimum(was, 0.0) - CLOSING_OVERLAP * self.masonry.tolerance)[~closed.still].any())
 
-    def projected(self, pose: Array, motion: Array, stay: Stay) -> Array:
+    def projected(self, pose: Array, motion: Array, closed: ClosedLines) -> Array:
         """The pose after a motion, with the lines that stay where they were on their faces."""
         lines, goal = self.masonry.lines, self.relative(pose)
         after = self.turned(pose, motion)
-        for _ in range(TURNS):
+        for _ in range(MOST_PROJECTIONS):
             moves = Moves.from_pose(self.masonry, after)
             off = self.relative(after) - goal
-            rows = [self.rates(moves, lines.normal)[stay.closed]]
-            rows += [self.rates(moves, tangent)[stay.stuck] for tangent in lines.tangents]
-            left = [(off * lines.normal).sum(axis=1)[stay.closed]]
-            left += [(off * tangent).sum(axis=1)[stay.stuck] for tangent in lines.tangents]
+            rows = [self.rates(moves, lines.normal)[closed.still]]
+            rows += [self.rates(moves, tangent)[closed.stuck] for tangent in lines.tangents]
+            left = [(off * lines.normal).sum(axis=1)[closed.still]]
+            left += [(off * tangent).sum(axis=1)[closed.stuck] for tangent in lines.tangents]
             missing = np.concatenate(left)
-            if np.abs(missing).max(initial=0.0) < ROUNDED * self.size:
+            if np.abs(missing).max(initial=0.0) < PROJECTION_TOLERANCE * self.size:
                 break
             change = -np.linalg.lstsq(vstack(rows).toarray(), missing, rcond=1e-9)[0]
             after = self.turned(after, change.reshape(motion.shape))

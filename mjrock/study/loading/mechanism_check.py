@@ -159,9 +159,9 @@ class MechanismCheck:
 
         That of the SLV is the one of displacements, or where a_g,SLD is more than these allow, that of accelerations.
         """
-        found = [] if self._linear is None or not self.counts("linear") else [self._linear]
-        found += map(self._nonlinear, self.states if self.counts("nonlinear") else ())
-        return *found, *([] if self.damage is None else [self._damaged(self.damage)])
+        linear = [] if self._linear is None or not self.counts("linear") else [self._linear]
+        nonlinear = map(self._nonlinear, self.states if self.counts("nonlinear") else ())
+        return *linear, *nonlinear, *([] if self.damage is None else [self._damaged(self.damage)])
 
     def counts(self, method: str) -> bool:
         """Whether the conditions of a method count."""
@@ -195,15 +195,16 @@ class MechanismCheck:
     @property
     def steps(self) -> tuple[Step, ...]:
         """Every step with its clause, in the order of the check."""
-        found = [(key, "", getattr(self, key)) for key in OF_MECHANISM if not key.startswith((FREE, ON_FLOOR))]
-        found += [("yields", tie, d) for tie, d in self.yielding.items()]
-        found += [("breaks", tie, d) for tie, d in self.breaking.items()]
+        values = [(key, "", getattr(self, key)) for key in OF_MECHANISM if not key.startswith((FREE, ON_FLOOR))]
+        values += [("yields", tie, d) for tie, d in self.yielding.items()]
+        values += [("breaks", tie, d) for tie, d in self.breaking.items()]
         for name, state in self.states.items():
-            found += [(key, name, getattr(state, key)) for key in OF_LIMIT_STATE]
-        found += [("ground_ratio", name, self._nonlinear(name).ratio) for name in self.states if self.is_of_start(name)]
-        kind, steps = FREE if self._is_free else ON_FLOOR if self._is_on_floor else "", []
-        for key, of, value in found:
-            key = kind + key if kind + key in self.code.steps else key
+            values += [(key, name, getattr(state, key)) for key in OF_LIMIT_STATE]
+        ratios = {name: self._nonlinear(name).ratio for name in self.states if self.is_of_start(name)}
+        values += [("ground_ratio", name, ratio) for name, ratio in ratios.items()]
+        prefix, steps = FREE if self._is_free else ON_FLOOR if self._is_on_floor else "", []
+        for key, of, value in values:
+            key = prefix + key if prefix + key in self.code.steps else key
             if value is not None and key in self.code.steps:
                 unit = CHECK_STEPS[key].unit
                 steps.append(
@@ -326,8 +327,8 @@ def mechanism_check(
     peak, damage = starting_acceleration(severe, T_0, code), None
     if code.damage is not None and code.damage.state in demands:
         damage = starting_acceleration(demands[code.damage.state], T_0, code)
-    found = curve_of(case, code)
-    d, a = found.d, found.multiplier * GRAVITY / (found.participation * factor)
+    curve = curve_of(case, code)
+    d, a = curve.d, curve.multiplier * GRAVITY / (curve.participation * factor)
     if T_0 is not None:
         fine = np.union1d(d, np.linspace(0.0, float(d[-1]), 4001))
         d, a = fine, np.minimum(np.interp(fine, d, a), (2 * math.pi / T_0) ** 2 * fine)
@@ -337,10 +338,27 @@ def mechanism_check(
         capacity = rule.share * d_0
         period = rule.period_at(capacity, float(np.interp(capacity, d, a)))
         states[name] = LimitState(capacity, period, demanded_displacement(demands[name], period, rule.damping, T_0))
-    alpha_0 = float(found.multiplier[0]) if found.slack is None else found.slack
-    ties = found.yielding, found.breaking
-    curve = alpha_0, found.tied, found.participation, factor, d, a, d_0, states
-    check = MechanismCheck(*curve, peak, *ties, T_0, code, case, demands, found.moving, damage, found.ended, method)
+    check = MechanismCheck(
+        alpha_0=float(curve.multiplier[0]) if curve.slack is None else curve.slack,
+        alpha_tied=curve.tied,
+        participation=curve.participation,
+        confidence_factor=factor,
+        d=d,
+        a=a,
+        d_0=d_0,
+        states=states,
+        peak=peak,
+        yielding=curve.yielding,
+        breaking=curve.breaking,
+        elastic_period=T_0,
+        code=code,
+        mechanism=case,
+        demands=demands,
+        moving=curve.moving,
+        damage=damage,
+        ended=curve.ended,
+        method=method,
+    )
     if method == "linear" and check.linear_ratio is None:
         raise ValueError(f"method = 'linear' needs a linear check in {code.name} and a demand whose peak is known")
     return check

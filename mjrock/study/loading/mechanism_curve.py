@@ -35,13 +35,13 @@ def case_of(problem: Checked | AnyCase | Collapse) -> AnyCase:
         return problem.case
     if isinstance(problem, VerticalBending | HorizontalBending):
         return Case(problem.wall)
-    found = problem.start if isinstance(problem, LimitCurve) else problem
-    if not isinstance(found, Collapse):
-        return found
-    if found.masonry is not None:
-        return MasonryCase(found.masonry, 1.0, effects=found.effects)
-    assert found.case is not None
-    return found.case
+    collapse = problem.start if isinstance(problem, LimitCurve) else problem
+    if not isinstance(collapse, Collapse):
+        return collapse
+    if collapse.masonry is not None:
+        return MasonryCase(collapse.masonry, 1.0, effects=collapse.effects)
+    assert collapse.case is not None
+    return collapse.case
 
 
 class MechanismCurve(NamedTuple):
@@ -131,30 +131,30 @@ class PartCurve(NamedTuple):
 
 def _of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
     """Masonry of blocks, up to where nothing is borne, or where the mechanism cannot go on."""
-    found = PartCurve.from_curve("case", curve)
-    part, d = found.part, found.displacement / found.part.participation
-    alpha_0 = multiplier_of(curve.start, found.masonry, curve.effects)
-    if not found.is_whole:
+    moving = PartCurve.from_curve("case", curve)
+    part, d = moving.part, moving.displacement / moving.part.participation
+    alpha_0 = multiplier_of(curve.start, moving.masonry, curve.effects)
+    if not moving.is_whole:
         _require_some(curve, float(d[-1]), alpha_0, part.participation)
     pulled = any(link.law.holds for link in link_effects(curve.effects).values())
     yielding, breaking = (
-        {tie: float(np.interp(at, found.along, d)) for tie, at in of.items() if at <= found.along[-1]}
+        {tie: float(np.interp(at, moving.along, d)) for tie, at in of.items() if at <= moving.along[-1]}
         for of in curve.ties
     )
     last, rule = list(code.states.items())[-1]
     capacity = rule.share * float(d[-1])
-    if _stands_by_ties(curve, found.masonry, int(np.searchsorted(d, capacity))):
+    if _stands_by_ties(curve, moving.masonry, int(np.searchsorted(d, capacity))):
         _warn_of_ties(link_effects(curve.effects), f"d_{last}", capacity, None, breaking)
     return MechanismCurve(
-        found.multiplier,
-        d,
-        part.participation,
-        float(found.multiplier[0]) if pulled else None,
-        yielding,
-        breaking,
-        alpha_0,
-        part.names,
-        "" if found.is_whole else curve.ended,
+        multiplier=moving.multiplier,
+        d=d,
+        participation=part.participation,
+        tied=float(moving.multiplier[0]) if pulled else None,
+        yielding=yielding,
+        breaking=breaking,
+        slack=alpha_0,
+        moving=part.names,
+        ended="" if moving.is_whole else curve.ended,
     )
 
 
@@ -187,14 +187,15 @@ def _of_wall(case: Case, code: Code) -> MechanismCurve:
     first, second = float(weights @ heights), float(weights @ heights**2)
     moved = wall.pose(curve.rotation)[:, 0]  # of the control point, the centroid
     d = moved * second / (wall.centroid_height * first)
-    alone = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
+    without_ties = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
     yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
     last, rule = list(code.states.items())[-1]
-    _warn_of_ties(case.springs, f"d_{last}", rule.share * float(d[-1]), alone, breaking)
+    _warn_of_ties(case.springs, f"d_{last}", rule.share * float(d[-1]), without_ties, breaking)
     tied = None
     if case.pulls:
         tied = float(curve.multiplier[0]) + moment_at_strength(case.pulls) / (wall.weight * wall.centroid_height)
-    return MechanismCurve(curve.multiplier, d, first**2 / (float(weights.sum()) * second), tied, yielding, breaking)
+    participation = first**2 / (float(weights.sum()) * second)
+    return MechanismCurve(curve.multiplier, d, participation, tied=tied, yielding=yielding, breaking=breaking)
 
 
 def warn_of_inner_edge(case: Case, outwards: float) -> None:
@@ -210,20 +211,30 @@ def warn_of_inner_edge(case: Case, outwards: float) -> None:
 
 
 def _warn_of_ties(
-    springs: Mapping[str, Anchored], name: str, capacity: float, alone: float | None, breaking: Mapping[str, float]
+    springs: Mapping[str, Anchored],
+    name: str,
+    capacity: float,
+    without_ties: float | None,
+    breaking: Mapping[str, float],
 ) -> None:
-    """Warn of ties that still hold at the largest capacity [m], d_SLC of NTC 2018, where they raise it above the
-    displacement `alone` at which the curve without ties ends [m]; None where that is known to be less. `breaking` has
-    the displacement at which ties break [m]."""
+    """Warn of ties that still hold at the largest displacement capacity, where they raise it.
+
+    Args:
+        springs: the ties, by name.
+        name: of the capacity, such as d_SLC of NTC 2018.
+        capacity: the largest of the limit states [m].
+        without_ties: displacement at which the curve without ties ends [m]; None where it is less than the capacity.
+        breaking: displacement at which each tie breaks [m], by name.
+    """
     holding = [
-        f"{name} (ultimate = {f'{tie.law.ultimate:g} m' if tie.law.ultimate < math.inf else None})"
-        for name, tie in springs.items()
-        if breaking.get(name, math.inf) > capacity
+        f"{tie} (ultimate = {f'{spring.law.ultimate:g} m' if spring.law.ultimate < math.inf else None})"
+        for tie, spring in springs.items()
+        if breaking.get(tie, math.inf) > capacity
     ]
-    if holding and (alone is None or capacity > alone):
+    if holding and (without_ties is None or capacity > without_ties):
         ended = "lies where the curve without ties has ended"
-        if alone is not None:
-            ended = f"is more than {alone:.3g} m, at which the curve without ties ends"
+        if without_ties is not None:
+            ended = f"is more than {without_ties:.3g} m, at which the curve without ties ends"
         warn_of(
             f"{name} = {capacity:.3g} m {ended}: {', '.join(holding)} would still hold there; say by `ultimate` how "
             "far a tie can be drawn out [m]",
