@@ -13,7 +13,7 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.explicit import solve_explicit
 from mjrock.distinct.response import EnergyGainError
-from mjrock.study.loading.push import BLOWS, ForceRun, Piece, warn_if_fast
+from mjrock.study.loading.push import BLOWS_TO_END, ForceRun, Piece, warn_if_fast
 
 JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
 
@@ -78,11 +78,11 @@ def test_what_blows_bear_is_nothing_to_compare_inertia_with():
     load = ForceRun(case, None, 0.0, 0.0, mr.Actuator(None, None, 1, None, 1e6), 0.1)
     blow = Piece(still + 0.01, still + 2.0, still + 1.0, still, SimpleNamespace(t=[1.0], end=None), 0.0, 0.0, 0.0)
     load.accept(blow._replace(force=still + 0.3, inertia=still))
-    for _ in range(BLOWS):
-        assert not load.done(blow)
+    for _ in range(BLOWS_TO_END):
+        assert not load.ending(blow)
         load.accept(blow)
-    assert load.done(blow) == "ends in blows at 10 mm"
-    assert load.largest == 0.3
+    assert load.ending(blow) == "ends in blows at 10 mm"
+    assert load.largest_force == 0.3
 
 
 @pytest.mark.parametrize(("unit", "peak"), [("N", 2.0), ("-", 1.0)])

@@ -42,32 +42,32 @@ from .pushover import falls_to_zero
 
 PIECES, POINTS, SAMPLES = 100, 4, 5
 """Pieces of a push, points of the curve in each, and samples of a point."""
-SHORTEST = 1e-6
+SHORTEST_PUSH = 1e-6
 """Least displacement of a push [m]."""
-TRIES = 5
-"""How often a piece is made at most, each time at half the rate."""
-HELPS = 0.75
-"""Inertia of a piece over that at twice the rate, above which a lower rate is no help [-]."""
-FIRST = 0.02
-"""Time of the first piece and of the shortest one [s]."""
-QUIET = 0.25
+MOST_ATTEMPTS = 5
+"""Most times that a piece is made, each at half the rate of the one before."""
+USEFUL_RATIO = 0.75
+"""Inertia of a piece over that at twice the rate, up to which a lower rate still is of use [-]."""
+SHORTEST_PIECE = 0.02
+"""Time of the first piece, and the least of any [s]."""
+SHARE_TO_SPEED_UP = 0.25
 """Share of the inertia allowed below which the next piece takes half the time [-]."""
-RISE, LEAST = 0.03, 0.001
+MULTIPLIER_STEP, LEAST_MULTIPLIER_STEP = 0.03, 0.001
 """Growth of the multiplier beyond all before it in a piece, over the largest, and its least value [-]. A piece in which
 it grows twice as much is cut into halves."""
-CUTS = 3
-"""How often a piece is cut."""
-STIFF = 1e4
-"""Stiffness of what drives all blocks, over their weight divided by the height of the masonry [-]."""
-HIGHEST = 2.5
+PIECE_HALVINGS = 3
+"""Most times that a piece is cut into halves."""
+DRIVER_STIFFNESS = 1e4
+"""Stiffness of the driver of all blocks, over their weight divided by the height of the masonry [-]."""
+LARGEST_MULTIPLIER = 2.5
 """Largest multiplier of a push [-]."""
-DAMPED = 0.5
-"""Damping ratio of what is driven on an actuator that has no damping of its own [-]."""
-STRIKING = 0.05
+DRIVER_DAMPING = 0.5
+"""Damping ratio of the driven mass on an actuator that has no damping of its own [-]."""
+BLOW_INERTIA = 0.05
 """Force of inertia over what is borne beyond which a point is part of a blow [-]."""
-BLOWS = 5
+BLOWS_TO_END = 5
 """Pieces in a row that are part of blows at any rate, after which a push along a direction ends."""
-OFF = 0.02
+WORK_ERROR = 0.02
 """Difference of the work under a curve and the energy gained that is warned of, over the largest energy [-]."""
 
 
@@ -189,17 +189,19 @@ def push(
     turns = require_row("to", np.atleast_1d(require_reals("to", to, "displacements")), "displacement")
     require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST_STROKE, LARGEST_STROKE, "m")
     if turns.any():
-        require_within("to", float(np.abs(turns).max()), SHORTEST, LARGEST_STROKE, "m")
+        require_within("to", float(np.abs(turns).max()), SHORTEST_PUSH, LARGEST_STROKE, "m")
     case = _required(masonry, effects, start)
     pushed = case, start, mass_damping, local_damping
     if isinstance(driver, Actuator) and angle is None:
-        return _pushed(ActuatorRun(*pushed, _damped(driver, _driven_mass(driver, case)), turns), allowed, falls_to)
+        return _pushed_in_pieces(
+            ActuatorRun(*pushed, _with_damping(driver, _driven_mass(driver, case)), turns), allowed, falls_to
+        )
     if isinstance(driver, Actuator):
         raise ValueError(f"angle = {shown(angle)} is for a direction; an Actuator has one of its own")
-    actuator = _of_all(case, horizontal(masonry, driver, angle, "driver"))
+    actuator = _driver_of_all_blocks(case, horizontal(masonry, driver, angle, "driver"))
     if len(turns) != 1 or turns[0] <= 0:
         raise ValueError(f"to = {shown(to)}: a direction goes with one displacement above 0, an Actuator with others")
-    return _pushed(ForceRun(*pushed, actuator, float(turns[0])), allowed, falls_to)
+    return _pushed_in_pieces(ForceRun(*pushed, actuator, float(turns[0])), allowed, falls_to)
 
 
 def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: object) -> MasonryCase:
@@ -213,8 +215,15 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: objec
 
 
 class Piece(NamedTuple):
-    """A piece of a push: its points, its answer, and at its end how far the actuator has gone, how far its spring is
-    pressed, and what was gained."""
+    """A piece of a push.
+
+    Args:
+        displacement, force, inertia, energy: of its points, see `Push`, shape (n,).
+        answer: its motion.
+        level: displacement of the actuator at its end [m].
+        compression: of the spring of the actuator then [m].
+        energy_gained: that the masonry has gained by then, since the push began [J].
+    """
 
     displacement: Array
     force: Array
@@ -222,13 +231,13 @@ class Piece(NamedTuple):
     energy: Array
     answer: Response
     level: float
-    stretch: float
-    gained: float
+    compression: float
+    energy_gained: float
 
 
 def without_blows(borne: Array, inertia: Array) -> Array:
     """What is borne, below nothing at points that are part of a blow."""
-    return np.where(np.abs(inertia) <= STRIKING * borne, borne, -1.0)
+    return np.where(np.abs(inertia) <= BLOW_INERTIA * borne, borne, -1.0)
 
 
 def means(values: Array) -> Array:
@@ -278,8 +287,8 @@ class PushRun:
     local_damping: float
     actuator: Actuator
     level: float = field(default=0.0, init=False)
-    gained: float = field(default=0.0, init=False)
-    largest: float = field(default=0.0, init=False)
+    energy: float = field(default=0.0, init=False)
+    largest_force: float = field(default=0.0, init=False)
     unit, weight = "N", 1.0
 
     def path(self, duration: float) -> tuple[Array, Array]:
@@ -298,11 +307,19 @@ class PushRun:
             warnings.filterwarnings("ignore", ".* was drawn out by")  # the push warns at its end
             answer = self._answer(case)
         *_, force = answer.actuators.values()  # effects may have others
-        gone = np.interp(answer.t, t, path)
-        stretch, inertia = self.stretched(answer, force, gone), self.inertia(answer, gone)
-        place, gained = self.level + gone - stretch, self._gained(answer, stretch)
-        end = self.level + gone[-1], stretch[-1], gained[-1]
-        return Piece(means(place), means(force) - inertia, inertia, means(gained), answer, *map(float, end))
+        advance = np.interp(answer.t, t, path)
+        compression, inertia = self.compression_at(answer, force, advance), self.inertia(answer, advance)
+        displacement, energy = self.level + advance - compression, self._energy_gained(answer, compression)
+        return Piece(
+            displacement=means(displacement),
+            force=means(force) - inertia,
+            inertia=inertia,
+            energy=means(energy),
+            answer=answer,
+            level=self.level + float(advance[-1]),
+            compression=float(compression[-1]),
+            energy_gained=float(energy[-1]),
+        )
 
     def _answer(self, case: MasonryCase) -> Response:
         """The motion of a piece.
@@ -331,15 +348,15 @@ class PushRun:
                 remedy = f"masonry that has given way swings; damp its motion by {damped}"
             raise type(broken)(f"{what}, {piece}: {remedy}") from None
 
-    def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
+    def compression_at(self, answer: Response, force: Array, advance: Array) -> Array:
         """How far the spring of the actuator is pressed at the samples [m], without the part of its dashpot."""
         return force / self.actuator.stiffness
 
-    def inertia(self, answer: Response, gone: Array) -> Array:
+    def inertia(self, answer: Response, advance: Array) -> Array:
         """Force of inertia and of the damping of the motion along the direction, in the mean of each point [N]."""
         raise NotImplementedError
 
-    def _gained(self, answer: Response, stretch: Array) -> Array:
+    def _energy_gained(self, answer: Response, compression: Array) -> Array:
         """What the masonry has gained and what was taken in it at the samples of a piece, see `Push.energy` [J].
 
         The spring and the dashpot of the actuator have no part in it, nor has the damping that is not in the curve.
@@ -347,11 +364,12 @@ class PushRun:
         ledger, driving = answer.ledger, list(answer.actuators)[-1]
         assert ledger is not None
         others = sum((work for name, work in ledger.put_in.items() if name != driving), np.zeros(len(answer.t)))
-        own = ledger.dashpots[driving] + 0.5 * self.actuator.stiffness * stretch**2
-        total = sum(ledger.taken.values(), ledger.potential + ledger.elastic) - others - own - self._slowed(answer)
-        return np.asarray(self.gained + total - total[0])
+        own = ledger.dashpots[driving] + 0.5 * self.actuator.stiffness * compression**2
+        total = sum(ledger.taken.values(), ledger.potential + ledger.elastic)
+        total = total - others - own - self._mass_damping_work(answer)
+        return np.asarray(self.energy + total - total[0])
 
-    def _slowed(self, answer: Response) -> Array:
+    def _mass_damping_work(self, answer: Response) -> Array:
         """What damping in proportion to mass has taken at the samples of a piece [J]."""
         assert answer.ledger is not None
         power = 2 * self.mass_damping * answer.ledger.kinetic
@@ -359,20 +377,20 @@ class PushRun:
 
     def accept(self, piece: Piece) -> None:
         """Go on from the end of a piece."""
-        self.start, self.level, self.gained = piece.answer.end, piece.level, piece.gained
-        self.largest = max(self.largest, float(without_blows(np.abs(piece.force), piece.inertia).max()))
+        self.start, self.level, self.energy = piece.answer.end, piece.level, piece.energy_gained
+        self.largest_force = max(self.largest_force, float(without_blows(np.abs(piece.force), piece.inertia).max()))
 
-    def share(self, piece: Piece) -> float:
+    def inertia_share(self, piece: Piece) -> float:
         """Root mean square of the inertia in a piece, over the largest force so far [-]."""
-        most = max(self.largest, float(np.abs(piece.force).max()))
+        most = max(self.largest_force, float(np.abs(piece.force).max()))
         return float(np.sqrt(np.mean(piece.inertia**2))) / most
 
-    def next_time(self, duration: float, share: float, allowed: float) -> float:
+    def next_duration(self, duration: float, share: float, allowed: float) -> float:
         """Time of the next piece [s], from that of the last and its inertia, over the largest force, and what is
         allowed [-]."""
-        return max(0.5 * duration, FIRST) if share < QUIET * allowed else duration
+        return max(0.5 * duration, SHORTEST_PIECE) if share < SHARE_TO_SPEED_UP * allowed else duration
 
-    def done(self, piece: Piece) -> str:
+    def ending(self, piece: Piece) -> str:
         """Why it ends after a piece, or nothing."""
         raise NotImplementedError
 
@@ -401,19 +419,19 @@ class ActuatorRun(PushRun):
         """To the next displacement."""
         return np.array([0.0, duration]), np.array([0.0, self.levels[0] - self.level])
 
-    def inertia(self, answer: Response, gone: Array) -> Array:
+    def inertia(self, answer: Response, advance: Array) -> Array:
         """The rate of momentum along the direction, with the part of it that is damped away."""
         way = self.actuator.way
         momentum = (answer.velocity[:, :, : len(way)] @ way) @ free_masses(self.case)
-        grown = np.diff(momentum[::SAMPLES]) / np.diff(answer.t[::SAMPLES])
-        return np.asarray(grown + self.mass_damping * means(momentum))
+        rate = np.diff(momentum[::SAMPLES]) / np.diff(answer.t[::SAMPLES])
+        return np.asarray(rate + self.mass_damping * means(momentum))
 
     def accept(self, piece: Piece) -> None:
         """Go on to the level after that."""
         super().accept(piece)
         del self.levels[0]
 
-    def done(self, piece: Piece) -> str:
+    def ending(self, piece: Piece) -> str:
         """At the last level."""
         return "" if self.levels else f"reached {1e3 * piece.level:.4g} mm"
 
@@ -431,15 +449,15 @@ class ForceRun(PushRun):
 
     def __post_init__(self) -> None:
         self.weight = weight_of(self.case)
-        self.least = min(LEAST * self.weight / self.actuator.stiffness, self.to / PIECES)
-        going = 0.0 if self.start is None else float(of_centroid(self.case, self.start[1], self.actuator.way))
-        self.speed, self.stretch, self.blows = max(going, 0.0), math.nan, 0
-        self.step = max(self.least, self.speed * FIRST)
+        self.least = min(LEAST_MULTIPLIER_STEP * self.weight / self.actuator.stiffness, self.to / PIECES)
+        speed = 0.0 if self.start is None else float(of_centroid(self.case, self.start[1], self.actuator.way))
+        self.speed, self.compression, self.blows = max(speed, 0.0), math.nan, 0
+        self.step = max(self.least, self.speed * SHORTEST_PIECE)
 
     @property
-    def rise(self) -> float:
+    def multiplier_step(self) -> float:
         """Growth of the multiplier in a piece [-]."""
-        return max(RISE * self.largest, LEAST)
+        return max(MULTIPLIER_STEP * self.largest_force, LEAST_MULTIPLIER_STEP)
 
     def path(self, duration: float) -> tuple[Array, Array]:
         """Further by a step; the speed changes evenly from the present one to that of a step in this duration."""
@@ -449,90 +467,90 @@ class ForceRun(PushRun):
 
     def piece(self, duration: float) -> Piece:
         """The piece with multipliers in place of forces, cut where they grow by too much."""
-        piece = self.in_weights(super().piece(duration))
-        for _ in range(CUTS):
-            if self.strikes(piece) or self.grown(piece) <= 2 * self.rise or self.step <= self.least:
+        piece = self.as_multipliers(super().piece(duration))
+        for _ in range(PIECE_HALVINGS):
+            if self.is_blow(piece) or self.growth(piece) <= 2 * self.multiplier_step or self.step <= self.least:
                 break
             self.step = max(0.5 * self.step, self.least)
-            piece = self.in_weights(super().piece(duration))
+            piece = self.as_multipliers(super().piece(duration))
         return piece
 
-    def in_weights(self, piece: Piece) -> Piece:
+    def as_multipliers(self, piece: Piece) -> Piece:
         """A piece with multipliers in place of forces."""
         return piece._replace(force=piece.force / self.weight, inertia=piece.inertia / self.weight)
 
-    def strikes(self, piece: Piece) -> bool:
+    def is_blow(self, piece: Piece) -> bool:
         """Whether a piece is part of a blow."""
-        return self.share(piece) > STRIKING
+        return self.inertia_share(piece) > BLOW_INERTIA
 
-    def grown(self, piece: Piece) -> float:
-        """By how much the multiplier gets above all before [-]."""
-        return float(piece.force.max()) - self.largest
+    def growth(self, piece: Piece) -> float:
+        """By how much the largest multiplier of a piece exceeds all before [-]."""
+        return float(piece.force.max()) - self.largest_force
 
-    def stretched(self, answer: Response, force: Array, gone: Array) -> Array:
+    def compression_at(self, answer: Response, force: Array, advance: Array) -> Array:
         """From how far the centroid has moved. One that carries on counts from where the blocks are."""
         moved = of_centroid(self.case, answer.pose, self.actuator.way)
-        if math.isnan(self.stretch):
-            self.stretch = float(force[0]) / self.actuator.stiffness
+        if math.isnan(self.compression):
+            self.compression = float(force[0]) / self.actuator.stiffness
             if self.start is not None:
-                self.level, self.largest = float(moved[0]) + self.stretch, float(force[0]) / self.weight
-        return np.asarray(self.stretch + gone - (moved - moved[0]))
+                self.level, self.largest_force = float(moved[0]) + self.compression, float(force[0]) / self.weight
+        return np.asarray(self.compression + advance - (moved - moved[0]))
 
-    def inertia(self, answer: Response, gone: Array) -> Array:
+    def inertia(self, answer: Response, advance: Array) -> Array:
         """The growth of the kinetic energy, with what was damped away, over the displacement of what drives."""
         assert answer.ledger is not None
-        kinetic = answer.ledger.kinetic + self._slowed(answer)
-        return np.asarray(np.diff(kinetic[::SAMPLES]) / np.diff(gone[::SAMPLES]))
+        kinetic = answer.ledger.kinetic + self._mass_damping_work(answer)
+        return np.asarray(np.diff(kinetic[::SAMPLES]) / np.diff(advance[::SAMPLES]))
 
     def accept(self, piece: Piece) -> None:
         """Go on from the end of a piece, with the step in which the multiplier would grow as it is to."""
-        share = 2.0 if self.strikes(piece) else self.rise / max(self.grown(piece), 1e-9)
+        share = 2.0 if self.is_blow(piece) else self.multiplier_step / max(self.growth(piece), 1e-9)
         self.speed = 2 * self.step / piece.answer.t[-1] - self.speed
-        self.blows = self.blows + 1 if self.strikes(piece) else 0
+        self.blows = self.blows + 1 if self.is_blow(piece) else 0
         self.step = min(max(self.step * min(max(share, 0.5), 2.0), self.least), self.to / PIECES)
         super().accept(piece)
-        self.stretch = piece.stretch
+        self.compression = piece.compression
 
-    def next_time(self, duration: float, share: float, allowed: float) -> float:
+    def next_duration(self, duration: float, share: float, allowed: float) -> float:
         """The speed of the centroid grows no faster than the force of inertia that is allowed, half as fast in
         energy: blocks that turn have more of it."""
-        gained = GRAVITY * allowed * self.largest * self.step if share < QUIET * allowed else 0.0
-        return max(self.step / math.sqrt(self.speed**2 + gained), FIRST)
+        gained = GRAVITY * allowed * self.largest_force * self.step if share < SHARE_TO_SPEED_UP * allowed else 0.0
+        return max(self.step / math.sqrt(self.speed**2 + gained), SHORTEST_PIECE)
 
-    def done(self, piece: Piece) -> str:
+    def ending(self, piece: Piece) -> str:
         """Where the centroid has moved, nothing gives way, or nothing is borne any more."""
         if piece.displacement[-1] > self.to:
             return f"moved by {1e3 * self.to:.4g} mm"
-        if self.strikes(piece):
+        if self.is_blow(piece):
             at = 1e3 * piece.displacement[-1]
-            return f"ends in blows at {at:.4g} mm" if self.blows == BLOWS else ""
-        if piece.force[-1] < 0 and self.largest > LEAST:
+            return f"ends in blows at {at:.4g} mm" if self.blows == BLOWS_TO_END else ""
+        if piece.force[-1] < 0 and self.largest_force > LEAST_MULTIPLIER_STEP:
             return f"goes on by itself from {1e3 * piece.displacement[-1]:.4g} mm"
-        return f"nothing gives way to {HIGHEST:g}" if piece.force[-1] >= HIGHEST else ""
+        return f"nothing gives way to {LARGEST_MULTIPLIER:g}" if piece.force[-1] >= LARGEST_MULTIPLIER else ""
 
 
-def _pushed(load: PushRun, allowed: float, falls_to: float) -> Push:
+def _pushed_in_pieces(run: PushRun, allowed: float, falls_to: float) -> Push:
     """The pieces of a push until one ends it."""
-    points, ended, duration = list[tuple[Array, ...]](), "", FIRST
+    points, ended, duration = list[tuple[Array, ...]](), "", SHORTEST_PIECE
     with Bar("push", "pieces") as bar:
         while not ended:
-            piece, share = load.piece(duration), math.inf
-            for _ in range(TRIES - 1):
-                before, share = share, load.share(piece)
-                if share <= allowed or share > HELPS * before:
+            piece, share = run.piece(duration), math.inf
+            for _ in range(MOST_ATTEMPTS - 1):
+                before, share = share, run.inertia_share(piece)
+                if share <= allowed or share > USEFUL_RATIO * before:
                     break
                 duration *= 2
-                piece = load.piece(duration)
-            share = load.share(piece)
-            load.accept(piece)
-            duration = load.next_time(duration, share, allowed)
+                piece = run.piece(duration)
+            share = run.inertia_share(piece)
+            run.accept(piece)
+            duration = run.next_duration(duration, share, allowed)
             points.append(piece[:4])
-            fallen = float(np.abs(piece.force).max()) < falls_to * load.largest
-            ended = load.done(piece) or (f"fell to {falls_to:.0%} of its peak" if fallen else "")
+            fallen = float(np.abs(piece.force).max()) < falls_to * run.largest_force
+            ended = run.ending(piece) or (f"fell to {falls_to:.0%} of its peak" if fallen else "")
             bar.add()
     displacement, force, inertia, energy = (np.concatenate(part) for part in zip(*points, strict=True))
-    push = Push(displacement, force, inertia, ended, piece.answer, load.unit, energy=energy)
-    warn_if_fast(push, load.weight)
+    push = Push(displacement, force, inertia, ended, piece.answer, run.unit, energy=energy)
+    warn_if_fast(push, run.weight)
     warn_of_ties(piece.answer.case, piece.answer.plastic)
     return push
 
@@ -542,7 +560,7 @@ def warn_if_fast(push: Push, weight: float) -> None:
     steps = 0.5 * (push.force[1:] + push.force[:-1]) * np.diff(push.displacement)
     beside = np.cumsum(weight * steps) - (push.energy[1:] - push.energy[0])
     off = float(np.abs(beside).max() / np.ptp(push.energy)) if np.ptp(push.energy) > 0 else 0.0
-    if off > OFF or push.inertia_share > STRIKING:
+    if off > WORK_ERROR or push.inertia_share > BLOW_INERTIA:
         at = 1e3 * push.displacement[np.abs(push.inertia).argmax()]
         warn_of(
             f"the push was not slow: forces of inertia are {push.inertia_share:.1%} of the peak, most at {at:.4g} mm, "
@@ -551,11 +569,13 @@ def warn_if_fast(push: Push, weight: float) -> None:
         )
 
 
-def _of_all(case: MasonryCase, way: Array) -> Actuator:
+def _driver_of_all_blocks(case: MasonryCase, way: Array) -> Actuator:
     """What drives all blocks along a unit vector."""
     masonry, weight = case.masonry, weight_of(case)
     heights = np.concatenate([part.corners[:, -1] for i in masonry.free for part in masonry.blocks[i].parts])
-    return _damped(Actuator(None, None, way, None, STIFF * weight / float(np.ptp(heights))), weight / GRAVITY)
+    return _with_damping(
+        Actuator(None, None, way, None, DRIVER_STIFFNESS * weight / float(np.ptp(heights))), weight / GRAVITY
+    )
 
 
 def _driven_mass(actuator: Actuator, case: MasonryCase) -> float:
@@ -567,8 +587,8 @@ def _driven_mass(actuator: Actuator, case: MasonryCase) -> float:
     return masonry.blocks[block].mass
 
 
-def _damped(actuator: Actuator, mass: float) -> Actuator:
+def _with_damping(actuator: Actuator, mass: float) -> Actuator:
     """An actuator that damps the swing of a mass on it."""
     if actuator.damping > 0:
         return actuator
-    return replace(actuator, damping=2 * DAMPED * math.sqrt(actuator.stiffness * mass))
+    return replace(actuator, damping=2 * DRIVER_DAMPING * math.sqrt(actuator.stiffness * mass))
