@@ -27,13 +27,13 @@ from .campaign.task import Row
 
 
 @dataclass(frozen=True)
-class OfWall:
+class WallSubject:
     """A wall as a campaign sees it.
 
     Attributes:
         SOLVERS: names of the solvers that take it, and in words what they take where they are not all.
         COLUMNS: its columns but the last two.
-        PEAK: the column that an incremental dynamic analysis gathers, infinite for what has overturned.
+        PEAK: the column that an incremental dynamic analysis collects, infinite for what has overturned.
         FALLS: what it does at its capacity, in words.
     """
 
@@ -68,8 +68,8 @@ class OfWall:
 
 
 @dataclass(frozen=True)
-class OfMasonry:
-    """Masonry as a campaign sees it, see `OfWall`."""
+class MasonrySubject:
+    """Masonry as a campaign sees it, see `WallSubject`."""
 
     case: MasonryCase
     SOLVERS = (("MuJoCo", "explicit"), ", which take masonry")
@@ -101,9 +101,9 @@ class OfMasonry:
         )
 
 
-def subject_of(case: AnyCase) -> OfWall | OfMasonry:
+def subject_of(case: AnyCase) -> WallSubject | MasonrySubject:
     """A case as a campaign sees it."""
-    return OfMasonry(case) if isinstance(case, MasonryCase) else OfWall(case)
+    return MasonrySubject(case) if isinstance(case, MasonryCase) else WallSubject(case)
 
 
 @cache
@@ -194,7 +194,7 @@ class Analysis:
 
     @property
     def PEAK(self) -> str:
-        """The column that an incremental dynamic analysis gathers; it is infinite for what has overturned."""
+        """The column that an incremental dynamic analysis collects; it is infinite for what has overturned."""
         return subject_of(self.case).PEAK
 
     def __repr__(self) -> str:

@@ -285,7 +285,7 @@ def test_the_time_left_follows_from_cases_after_the_first(tmp_path, monkeypatch,
 
 @pytest.mark.slow
 def test_without_a_terminal_lines_say_how_far_it_is(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(progress, "LINE_EVERY", 0.0)
+    monkeypatch.setattr(progress, "LINE_INTERVAL", 0.0)
     path = tmp_path / "c.sqlite"
     mr.campaign([Square(1), Square(-2)], path, workers=1)
     first = capsys.readouterr().err.splitlines()

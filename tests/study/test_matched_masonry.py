@@ -13,7 +13,7 @@ import mjrock as mr
 from mjrock.problem.masonry.laws.joint_table import ByKind, ByName
 from mjrock.problem.masonry.rigid_stack import RigidStack
 from mjrock.study.campaign.task import fingerprint
-from mjrock.study.matching.matched import STRONG_ABOVE, excess, peaks, rebound, restitutions, strong
+from mjrock.study.matching.matched import DAMPING_ABOVE, damping_above, excess, peaks, rebound, restitutions
 from mjrock.theory.impact import rigid_rocking
 
 HOLDS = 10.0
@@ -180,7 +180,7 @@ def test_the_joints_above_stay_closed_on_strong_dashpots():
 def test_the_uppermost_block_alone_loses_what_theory_says_on_strong_dashpots():
     """Half as high as wide, where the law lies outside its fit and lets it bounce."""
     given = stack(7, law=lambda wall, e, k_n: (0.05, 0.01))
-    c_over_k = strong(RigidStack.from_masonry(given))
+    c_over_k = damping_above(RigidStack.from_masonry(given))
     one = mr.Masonry.stack([mr.Block(0.3, 0.3)], 1e9, friction=HOLDS, xi=0.5 * c_over_k, frequency=1.0)
     assert lost(one) == pytest.approx(1, abs=2e-3)
     with warnings.catch_warnings(action="ignore"):
@@ -203,7 +203,9 @@ def test_the_strong_dashpots_of_two_blocks():
     stiffness[1, 2] = stiffness[2, 1] = -turned
     rigid, lowest = np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)[:2]
     assert abs(rigid) < 1e-9 * lowest  # it turns about the edge
-    assert strong(RigidStack.from_masonry(stack(2))) == pytest.approx(2 * STRONG_ABOVE / math.sqrt(lowest), rel=1e-9)
+    assert damping_above(RigidStack.from_masonry(stack(2))) == pytest.approx(
+        2 * DAMPING_ABOVE / math.sqrt(lowest), rel=1e-9
+    )
 
 
 def test_a_restitution_of_ones_own():

@@ -8,7 +8,7 @@ import pytest
 from campaign_tasks import Square
 
 import mjrock as mr
-from mjrock.study.campaign.progress import closing, status
+from mjrock.study.campaign.progress import closing_line, status
 
 WALL = mr.Block.from_size(0.6, 4.2)
 E = mr.Restitution.from_geometry(WALL)
@@ -37,12 +37,12 @@ def test_the_last_line_and_the_status(tmp_path, capsys):
 
 
 def test_a_campaign_that_was_broken_off_says_what_is_left():
-    line = closing(100, {"done": 48, "failed": 2}, {"at rest": 48}, 61.2, 384)
+    line = closing_line(100, {"done": 48, "failed": 2}, {"at rest": 48}, 61.2, 384)
     assert line == (
         "150 of 384 tasks have a row: 48 done, 2 failed (48 at rest) in 61.2 s, 100 had a row before, 234 left; "
         "the same call carries on"
     )
-    assert closing(0, {"done": 2}, {}, 1.0, None) == "2 tasks have a row: 2 done, 0 failed in 1 s"
+    assert closing_line(0, {"done": 2}, {}, 1.0, None) == "2 tasks have a row: 2 done, 0 failed in 1 s"
 
 
 @pytest.mark.slow

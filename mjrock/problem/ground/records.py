@@ -216,14 +216,14 @@ def binary_kind(data: bytes) -> str | None:
 
 
 def factor_of(unit: str | float) -> float:
-    """How many m/s2 a unit is: one of UNITS, or that number itself, as of the counts of an instrument."""
+    """How many m/s2 a unit is: one of ACCELERATION_UNITS, or that number itself, as of the counts of an instrument."""
     if isinstance(unit, int | float) and not isinstance(unit, bool):
         return require_within("unit", unit, 1e-15, 1e3, "m/s2")
     return ACCELERATION_UNITS[require_one_of("unit", unit, ACCELERATION_UNITS)]
 
 
 def stated_units(text: str) -> list[str]:
-    """The units of acceleration that a text names, those of UNITS."""
+    """The units of acceleration that a text names, those of ACCELERATION_UNITS."""
     plain = " ".join(text.split())
     return [unit for unit, written in STATED_UNITS.items() if written.search(plain)]
 
@@ -277,7 +277,7 @@ def number(word: str, place: int) -> float:
 
 
 def value_of(text: str) -> float:
-    """The value of a text that NUMBER matches."""
+    """The value of a text that DECIMAL_NUMBER matches."""
     return float(text.lower().replace("d", "e"))
 
 
@@ -292,18 +292,16 @@ UNEVEN_ROUNDED = 0.1
 """The same for times that are rounded to so few decimals that they cannot lie closer."""
 SLOW_SAMPLING = 0.1
 """Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
-ALONE = 5.0
-"""A first number that is the largest, and this many times as large as those soon after it, is doubted: it may be one of
-the header."""
-SOON = 10
-"""How many numbers those are."""
+HEADER_RATIO, NUMBERS_COMPARED = 5.0, 10
+"""A first number may be one of the header where it is the largest, and beyond this ratio to the numbers after it, of
+which so many are compared."""
 ROWS = "rows"
 """What `columns` is where the samples stand in rows, one after the other."""
 SMOOTH_ROWS = 0.7
 """Samples stand in rows where they jump less along the rows than this share of what they jump down the columns."""
 HEADER_LINE = 1000
 """Characters of a line of the header that are looked at."""
-MOST_HEADS = 4
+MOST_HEADER_NUMBERS = 4
 """Most numbers of a header that may stand before the samples."""
 SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods")
 MATLAB = ".mat"
@@ -333,7 +331,7 @@ class TableOptions(NamedTuple):
     """The arguments that describe a table.
 
     Args:
-        unit: of the accelerations, one of UNITS or how many m/s2 it is; None takes that of the header.
+        unit: of the accelerations, one of ACCELERATION_UNITS or how many m/s2 it is; None takes that of the header.
         time_unit: of the times and the step.
         dt: the time step in that unit; None takes that of the column of times or of the header.
         columns: those to read, by number from 0 or name: the times first, unless a step is given. "rows" for samples in
@@ -670,9 +668,9 @@ def _without_header(
         ValueError: with both readings where they may be: one equals dt, stands alone, or the row is not as wide as the
             others.
     """
-    for rows in range(1, MOST_HEADS):
+    for rows in range(1, MOST_HEADER_NUMBERS):
         lead, rest = [x for row in found.values[:rows] for x in row], found.values[rows:]
-        if len(lead) > MOST_HEADS or len(rest) < 10:
+        if len(lead) > MOST_HEADER_NUMBERS or len(rest) < 10:
             break
         counts = {float(len(rest))} | ({float(sum(map(len, rest)))} if found.width > 2 else set())
         if set(lead) & counts:
@@ -684,7 +682,7 @@ def _without_header(
         wide = found.width > 1
         follows = others[0] == [dt] and first[0] != 0 and first[0] == int(first[0])
         alone = len(others) >= 10 and abs(first[0]) > max(
-            max(abs(row[0]) for row in others), ALONE * max(abs(row[0]) for row in others[:SOON])
+            max(abs(row[0]) for row in others), HEADER_RATIO * max(abs(row[0]) for row in others[:NUMBERS_COMPARED])
         )
         grid = wide and len(first) == found.width and _is_grid(found.without(1).column(0), found.decimals, 1.0)
         early = grid and not _is_grid(found.column(0), found.decimals, 1.0)

@@ -21,18 +21,18 @@ from pebble import ProcessExpired
 from ...machine import cores
 from ...notice import collect_warnings
 from ...quantities import is_iterable, require_flag, require_path, require_real, require_whole, shown
-from .pool import CHUNK_SECONDS, QUIT, Workers
+from .pool import CHUNK_SECONDS, EXIT_FOR_ZERO, Workers
 from .progress import CampaignProgress
 from .store import Store
 from .task import RefusedTask, Row, Task, carry_out_all, column_names, failed_row, keyed, programs
 
 MOST_WORKERS = 10_000
 """Most processes of a campaign."""
-DEATHS = 2
+MOST_DEATHS = 2
 """A task during which this many worker processes have died is run alone."""
-LOOK_EVERY = 0.1
+POLL_INTERVAL = 0.1
 """Time between two looks for the rows of tasks that run in this process [s]."""
-GUARD = (
+MAIN_GUARD = (
     "the worker processes die as they start: they import the script that calls the campaign; let it do so "
     'below `if __name__ == "__main__":`; or give workers=1 without a time limit'
 )
@@ -154,18 +154,18 @@ def _carry_out(run: Runner, pending: Iterator[Job], executor: Executor | None, c
     if executor is None and run.limit is None and count == 1:
         in_turn = run.progress.total is None  # an iterator may look at the rows before its next task
         while jobs := list(islice(pending, 1 if in_turn else run.chunk())):
-            run.here(jobs)
+            run.run_here(jobs)
         return
     try:
         if executor is not None:
             width = getattr(executor, "_max_workers", count)
-            run.across(pending, width, lambda tasks: executor.submit(carry_out_all, tasks))
+            run.run_in_workers(pending, width, lambda tasks: executor.submit(carry_out_all, tasks))
         elif (first := next(pending, None)) is not None:
             with Workers(count, run.limit) as workers:
-                run.across(chain([first], pending), count, workers.submit)
+                run.run_in_workers(chain([first], pending), count, workers.submit)
     except BrokenExecutor as error:
         if executor is None and not run.progress.finished:
-            raise RuntimeError(GUARD) from None
+            raise RuntimeError(MAIN_GUARD) from None
         raise RuntimeError(
             f"the processes broke down: {error}; what is done is kept, and the same call carries on"
         ) from error
@@ -269,7 +269,7 @@ class Runner:
         self.seconds += sum(row["seconds"] for row in rows)
         self.progress.add(rows)
 
-    def here(self, jobs: Sequence[Job]) -> None:
+    def run_here(self, jobs: Sequence[Job]) -> None:
         """Run a chunk of jobs in a thread of this process.
 
         The main thread waits for the rows, so that Ctrl-C reaches it also while compiled code runs.
@@ -279,12 +279,12 @@ class Runner:
         Thread(target=lambda: finished.put(carry_out_all(tasks)), daemon=True).start()
         while True:
             with contextlib.suppress(Empty):
-                return self.write(jobs, finished.get(timeout=LOOK_EVERY))
+                return self.write(jobs, finished.get(timeout=POLL_INTERVAL))
 
-    def across(self, pending: Iterator[Job], width: int, submit: Submit) -> None:
+    def run_in_workers(self, pending: Iterator[Job], width: int, submit: Submit) -> None:
         """Run jobs in other processes, with twice as many chunks in flight as there are processes.
 
-        What a chunk leaves undone runs again, task by task. So does a task whose process was killed: after DEATHS
+        What a chunk leaves undone runs again, task by task. So does a task whose process was killed: after MOST_DEATHS
         deaths alone, in case memory was short, and if its process dies again, it gets a row that says so.
 
         Args:
@@ -295,39 +295,39 @@ class Runner:
         Raises:
             BrokenExecutor: if no process can take a job any more.
         """
-        again: deque[Job] = deque()
-        flying: dict[Future[list[Row]], list[Job]] = {}
+        retries: deque[Job] = deque()
+        in_flight: dict[Future[list[Row]], list[Job]] = {}
         try:
             while True:
-                while len(flying) < 2 * width and (jobs := self.take(pending, again, flying.values())):
+                while len(in_flight) < 2 * width and (jobs := self.take(pending, retries, in_flight.values())):
                     try:
-                        flying[submit([(job.task, job.history) for job in jobs])] = jobs
+                        in_flight[submit([(job.task, job.history) for job in jobs])] = jobs
                     except (PickleError, AttributeError, TypeError) as error:  # what pickle raises
-                        again.extend(self.remaining_jobs(jobs, error))
-                if not flying:
+                        retries.extend(self.remaining_jobs(jobs, error))
+                if not in_flight:
                     return
-                done = wait(flying, return_when=FIRST_COMPLETED).done
-                for future in [future for future in flying if future in done]:  # in the order of the tasks
-                    jobs = flying.pop(future)
+                done = wait(in_flight, return_when=FIRST_COMPLETED).done
+                for future in [future for future in in_flight if future in done]:  # in the order of the tasks
+                    jobs = in_flight.pop(future)
                     try:
                         rows = future.result()
                     except BrokenExecutor:
                         raise
                     except Exception as error:
-                        again.extend(self.remaining_jobs(jobs, error))
+                        retries.extend(self.remaining_jobs(jobs, error))
                     else:
                         self.write(jobs[: len(rows)], rows)
-                        again.extend(jobs[len(rows) :])
+                        retries.extend(jobs[len(rows) :])
         finally:
-            for future in flying:
+            for future in in_flight:
                 future.cancel()
 
-    def take(self, pending: Iterator[Job], again: deque[Job], flying: Collection[Sequence[Job]]) -> list[Job]:
+    def take(self, pending: Iterator[Job], retries: deque[Job], in_flight: Collection[Sequence[Job]]) -> list[Job]:
         """The jobs of the next chunk, none where one that is in flight, or the next one, has to run alone."""
-        if any(job.deaths >= DEATHS for jobs in flying for job in jobs):
+        if any(job.deaths >= MOST_DEATHS for jobs in in_flight for job in jobs):
             return []
-        if again:
-            return [again.popleft()] if again[0].deaths < DEATHS or not flying else []
+        if retries:
+            return [retries.popleft()] if retries[0].deaths < MOST_DEATHS or not in_flight else []
         return list(islice(pending, self.chunk()))
 
     def chunk(self) -> int:
@@ -359,13 +359,13 @@ class Runner:
     def died(self, job: Job, exitcode: int) -> Sequence[Job]:
         """The job whose process has died, if it was killed and is to be tried again."""
         job.deaths += 1
-        if exitcode < 0 and job.deaths <= DEATHS:
+        if exitcode < 0 and job.deaths <= MOST_DEATHS:
             return [job]
         if exitcode < 0:
             how = f"was killed by {signal.Signals(-exitcode).name}"
         else:
             cause = ", as after a fatal error of MuJoCo, which MUJOCO_LOG.TXT would hold" if exitcode == 1 else ""
-            how = f"ended with exit status {exitcode % QUIT}{cause}"
+            how = f"ended with exit status {exitcode % EXIT_FOR_ZERO}{cause}"
         often = f", {job.deaths} times in all" if job.deaths > 1 else ""
         self.write([job], [failed_row(RuntimeError(f"its worker process {how}{often}"))])
         return ()

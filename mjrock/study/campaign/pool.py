@@ -28,7 +28,7 @@ from .task import Row, Task, carry_out
 CHUNK_SECONDS = 0.5
 """Work that a worker does before it hands over its rows [s]: long compared with the 1 ms of handing over, and short
 enough to keep the progress bar moving."""
-QUIT = 256
+EXIT_FOR_ZERO = 256
 """Exit status that is given to a worker that ended with 0: `pebble` would take 0 for one that it has ended itself."""
 
 
@@ -89,9 +89,9 @@ class _Worker(SpawnProcess):
 
     @property
     def exitcode(self) -> int | None:
-        """Its exit status, see QUIT."""
+        """Its exit status, see EXIT_FOR_ZERO."""
         code = super().exitcode
-        return QUIT if code == 0 else code
+        return EXIT_FOR_ZERO if code == 0 else code
 
 
 class _Context(SpawnContext):

@@ -38,7 +38,7 @@ class WarningCounter:
         ]
 
 
-ERRORS = 3
+MOST_ERRORS = 3
 """Most different errors that are shown."""
 
 
@@ -48,7 +48,7 @@ def counts_text(outcomes: Mapping[str, int]) -> str:
     return ", ".join(f"{number} {name}" for name, number in ordered)
 
 
-def closing(
+def closing_line(
     kept: int, statuses: Mapping[str, int], outcomes: Mapping[str, int], seconds: float, total: int | None
 ) -> str:
     """The last line of a campaign.
@@ -90,7 +90,7 @@ def status(path: str | Path) -> str:
     for row in failed:
         line = str(row["error"]).splitlines()[0]
         errors.add(line[:160], NUMBER_IN_TEXT.sub("#", line.partition(" (at ")[0]))  # a grid says at which point
-    return "\n".join([*lines, *errors.lines("failed", ERRORS)])
+    return "\n".join([*lines, *errors.lines("failed", MOST_ERRORS)])
 
 
 def answer(argv: Sequence[str]) -> Answer:
@@ -100,9 +100,9 @@ def answer(argv: Sequence[str]) -> Answer:
     return Answer(status(made.parse_args(argv).store))
 
 
-LINE_EVERY = 30.0
+LINE_INTERVAL = 30.0
 """Time between two lines of a campaign without a terminal [s]."""
-FEWEST = 10
+FEWEST_CASES = 10
 """Fewest cases from which a rate is shown."""
 
 
@@ -118,7 +118,7 @@ class CampaignProgress:
         self.statuses: Counter[str] = Counter()
         self.outcomes: Counter[str] = Counter()
         self.warned = WarningCounter()
-        self.started = self.spoken = time.monotonic()
+        self.started = self.last_line = time.monotonic()
         self.first: tuple[int, float] | None = None
         if kept:
             self._print(f"{kept} rows in {store} are kept")
@@ -146,14 +146,15 @@ class CampaignProgress:
         if not self.bar.disable:
             self.bar.set_postfix_str(", ".join(parts), refresh=False)
             self.bar.update(self.skipped + finished - self.bar.n)
-        elif now - self.spoken >= LINE_EVERY:
-            self.spoken = now
+        elif now - self.last_line >= LINE_INTERVAL:
+            self.last_line = now
             of = "" if self.total is None else f" of {self.total}"
             self._print(", ".join([f"{self.skipped + finished}{of} cases", *parts]))
 
     def _rate(self, finished: int, now: float) -> float:
-        """Cases in a second since the first that ended, as workers start for some time; 0 for fewer than FEWEST."""
-        if finished < FEWEST or self.first is None or finished == self.first[0] or now <= self.first[1]:
+        """Cases in a second since the first that ended, as workers take some time to start; 0 for fewer than
+        FEWEST_CASES."""
+        if finished < FEWEST_CASES or self.first is None or finished == self.first[0] or now <= self.first[1]:
             return 0.0
         return (finished - self.first[0]) / (now - self.first[1])
 
@@ -163,7 +164,7 @@ class CampaignProgress:
         for line in self.warned.lines():
             self._print(line)
         seconds = time.monotonic() - self.started
-        self._print(closing(self.skipped, self.statuses, self.outcomes, seconds, self.total))
+        self._print(closing_line(self.skipped, self.statuses, self.outcomes, seconds, self.total))
 
     def _print(self, text: str) -> None:
         notice(text, by="campaign")

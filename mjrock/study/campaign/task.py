@@ -66,14 +66,14 @@ def fingerprint(*contents: object) -> str:
         TypeError: for a value whose content is not known, such as a function.
     """
     pieces: list[bytes] = []
-    _hand_on(contents, pieces.append)
+    _add_content(contents, pieces.append)
     return hashlib.sha256(b"".join(b"%d:" % len(piece) + piece for piece in pieces)).hexdigest()[:32]
 
 
-def _hand_on(value: object, add: Callable[[bytes], None]) -> None:
+def _add_content(value: object, add: Callable[[bytes], None]) -> None:
     """Add the content of a value as pieces of bytes, which are the same for equal contents alone."""
     if isinstance(value, np.generic):
-        _hand_on(value.item(), add)
+        _add_content(value.item(), add)
     elif value is None or isinstance(value, bool | str):
         add(repr(value).encode())
     elif isinstance(value, int | float):
@@ -81,22 +81,22 @@ def _hand_on(value: object, add: Callable[[bytes], None]) -> None:
     elif isinstance(value, tuple | list):
         add(b"[%d" % len(value))
         for item in value:
-            _hand_on(item, add)
+            _add_content(item, add)
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
         add(type(value).__name__.encode())
         if formula := getattr(type(value), "formula", ""):  # of a law of the user
             add(formula.encode())
         for name in _compared(type(value)):
             add(name.encode())
-            _hand_on(getattr(value, name), add)
+            _add_content(getattr(value, name), add)
     elif isinstance(value, np.ndarray):
         add(f"{value.dtype.str}{value.shape}".encode())
         add(np.ascontiguousarray(value).tobytes())
     elif isinstance(value, Mapping):
         add(b"{%d" % len(value))
         for name in sorted(value):
-            _hand_on(name, add)
-            _hand_on(value[name], add)
+            _add_content(name, add)
+            _add_content(value[name], add)
     else:
         raise TypeError(f"{spelt(value)} is of no type whose content can be hashed")
 
@@ -167,7 +167,7 @@ def keyed(task: Task) -> tuple[str, Task]:
         if not (callable(task) and hasattr(task, "labels") and hasattr(task, "COLUMNS")):
             raise TypeError(f"{table_text(task)} is not a task, which can be called and has labels and COLUMNS")
         for name, value in labels.items():
-            _named(f"the label {name}", value)
+            _cell_of(f"the label {name}", value)
         return fingerprint(programs(), task), task
     except Exception as error:
         refused = RefusedTask.because(error, labels)
@@ -189,7 +189,7 @@ def carry_out(task: Task, history: Path | None) -> Row:
     """The row of a task: what it returns, or how it failed; and the seconds that it took."""
     started = time.perf_counter()
     try:
-        row = {name: _named(f"the column {name}", value) for name, value in task(history).items()}
+        row = {name: _cell_of(f"the column {name}", value) for name, value in task(history).items()}
         if unexpected := row.keys() - set(task.COLUMNS):
             names, known = ", ".join(sorted(unexpected)), ", ".join(task.COLUMNS)
             raise ValueError(f"the task returned {names}; its COLUMNS are {known}")
@@ -199,7 +199,7 @@ def carry_out(task: Task, history: Path | None) -> Row:
     return row | {"seconds": time.perf_counter() - started}
 
 
-def _named(what: str, value: object) -> Value:
+def _cell_of(what: str, value: object) -> Value:
     """A value as a table holds it. Raises a ValueError with its name for one that no table holds."""
     try:
         return table_value(value)

@@ -110,7 +110,7 @@ def ida(
     store: str | Path = "ida.sqlite",
     **options: Unpack[CampaignOptions],
 ) -> IncrementalAnalysis:
-    """Run a wall under one or several records at every scale, and gather the peaks.
+    """Run a wall under one or several records at every scale, and collect the peaks.
 
     What the store holds already is not run again. The labels `record` and `scale` tell the rows apart there, unless the
     analyses have labels of these names.

@@ -41,23 +41,23 @@ from .match import BASE_BOUNDS, SIDE_BOUNDS, Closest, GivenWall, Match, highest_
 
 STIFF_AS_THEORY = 16.0
 """Rotation of the last rebound that counts, over that at which an edge lifts, of a base as stiff as theory's [-]."""
-FLAT = 2e-4
+LARGEST_UPLIFT = 2e-4
 """Most rotation at which an edge of such a base lifts, over alpha [-]: the work of the weight on its springs then costs
 less than 0.001 of e_2s."""
-TOUCH_DOWN = 0.415
+PLASTIC_TOUCH_DOWN = 0.415
 """Damping ratio of such a base times h/b [-], about that of a plastic touch-down. With less the wall bounces on it,
 with more a faint rebound loses more than a large one."""
 MISS_WARNED_OF = 0.02
 """Miss of |e| that is warned of, over |e| [-]: as the scatter of |e| with the phase of a touch is."""
 UNLIKE_EQ_2 = 5e-3
 """Relative difference of e_2s to Eq. 2 from which it is warned that a stiff base does not give it [-]."""
-STRONG_ABOVE = 4.0
+DAMPING_ABOVE = 4.0
 """Damping ratio of the joints above the base, in the lowest mode in which the stack bends over an edge of it [-]. From
 1 on the stack does not vibrate, and from 4 on more changes the energy lost by less than 0.2 %."""
 PLASTIC_WITHIN = 5e-3
 """Relative difference to the energy that is to be lost up to which a base that touches down plastically is kept [-]. On
 stiff joints less damping changes no more than that, and makes the stack bounce."""
-MISSED = 0.02
+ENERGY_MISS_WARNED_OF = 0.02
 """Relative difference to the energy that is to be lost from which a match has missed it [-]."""
 SAMPLE_STEP = 5e-4
 """Spacing of the samples, over the time of a rebound [-]."""
@@ -132,8 +132,8 @@ def as_theory(
     """Interfaces on which a wall rocks as classical theory has it: the same |e| at every one of the first rebounds.
 
     A soft base makes |e| depend on the size of the rebound. Here the stiffness is chosen so that the rotation after
-    `rebounds` rebounds is still STIFF_AS_THEORY times that at which an edge lifts off the base, and this at most FLAT
-    alpha. On such a base e_2s is that of Eq. 2 whatever the damping. The side is matched.
+    `rebounds` rebounds is still STIFF_AS_THEORY times that at which an edge lifts off the base, and this at most
+    LARGEST_UPLIFT alpha. On such a base e_2s is that of Eq. 2 whatever the damping. The side is matched.
 
     Args:
         wall, e: the wall, and the restitution of theory.
@@ -155,11 +155,11 @@ def as_theory(
     theory = Restitution.from_geometry(wall).base
     if abs(e.base / theory - 1) > UNLIKE_EQ_2:
         warn_of(f"a stiff base gives e_2s = {theory:.4g} of Eq. 2, and not {e.base:.4g}")
-    left = (e.lumped if side_stop else e.base) ** (2 * rebounds)
-    last = wall.rotation_at(left * float(wall.potential_energy(amplitude * wall.alpha)))
-    uplift = min(last / STIFF_AS_THEORY, FLAT * wall.alpha)
+    remaining = (e.lumped if side_stop else e.base) ** (2 * rebounds)
+    last = wall.rotation_at(remaining * float(wall.potential_energy(amplitude * wall.alpha)))
+    uplift = min(last / STIFF_AS_THEORY, LARGEST_UPLIFT * wall.alpha)
     k_n = wall.weight / (2 * wall.base_length * wall.half_base**2 * uplift)
-    xi_base, xi_side = TOUCH_DOWN / wall.slenderness, 0.0
+    xi_base, xi_side = PLASTIC_TOUCH_DOWN / wall.slenderness, 0.0
     if side_stop:
         xi_side = _matched(Match(GivenWall(wall, k_n, k_n, amplitude), e, 2, xi_base))
     return Contacts.from_damping(
@@ -222,59 +222,59 @@ def matched_masonry(
     require_kind("e", e, Restitution, type(None))
     amplitude = require_within("amplitude", amplitude, 0.01, 0.95)
     accuracy = require_within("accuracy", accuracy, 1e-8, 0.1)
-    pile = RigidStack.from_masonry(masonry)
-    e = rigid_rocking(pile) if e is None else e
-    if pile.sides:
+    stack = RigidStack.from_masonry(masonry)
+    e = rigid_rocking(stack) if e is None else e
+    if stack.sides:
         e.require_rebound()
-    k_n, points = (float(column[pile.base]) for column in (masonry.table.k_n, masonry.table.points))
-    frequency = reference_frequency(pile.wall, k_n, int(points))
-    xi = np.full(len(masonry.joints), 0.5 * frequency * strong(pile))
+    k_n, points = (float(column[stack.base]) for column in (masonry.table.k_n, masonry.table.points))
+    frequency = reference_frequency(stack.wall, k_n, int(points))
+    xi = np.full(len(masonry.joints), 0.5 * frequency * damping_above(stack))
 
     def damped(whole: Masonry) -> Masonry:
         values = tuple((joint.name, float(value)) for joint, value in zip(masonry.joints, xi, strict=True))
         return dataclasses.replace(whole, law=None, frequency=frequency, xi=ByName(values))
 
     def base(value: float) -> float:
-        xi[pile.base] = value
-        return rebound(damped(pile.free_standing), amplitude, accuracy)
+        xi[stack.base] = value
+        return rebound(damped(stack.free_standing), amplitude, accuracy)
 
     def side(value: float) -> float:
-        xi[list(pile.sides)] = value
+        xi[list(stack.sides)] = value
         return rebound(damped(masonry), amplitude, accuracy)
 
-    if abs(excess(base(TOUCH_DOWN / pile.wall.slenderness), e.base)) > PLASTIC_WITHIN:
-        xi[pile.base] = _found("base", highest_branch(base, e.base, BASE_BOUNDS), e.base)
-    if pile.sides:
+    if abs(excess(base(PLASTIC_TOUCH_DOWN / stack.wall.slenderness), e.base)) > PLASTIC_WITHIN:
+        xi[stack.base] = _warned_xi("base", highest_branch(base, e.base, BASE_BOUNDS), e.base)
+    if stack.sides:
         lumped = abs(e.lumped)
-        xi[list(pile.sides)] = _found("side", highest_branch(side, lumped, SIDE_BOUNDS, whole=False), lumped)
+        xi[list(stack.sides)] = _warned_xi("side", highest_branch(side, lumped, SIDE_BOUNDS, whole=False), lumped)
     return damped(masonry)
 
 
-def strong(pile: RigidStack) -> float:
-    """c/k with which the blocks of a stack over an edge of its base do not vibrate on the joints above [s].
+def damping_above(stack: RigidStack) -> float:
+    """c/k of the joints above the base with which the blocks of a stack over an edge of it do not vibrate [s].
 
-    It is 2 STRONG_ABOVE over the lowest frequency of the stack with all joints closed above, and one edge of the base.
+    It is 2 DAMPING_ABOVE over the lowest frequency of the stack with all joints closed above, and one edge of the base.
     """
-    stack = pile.free_standing
-    lines = stack.lines
-    base = np.flatnonzero(lines.joint == RigidStack.from_masonry(stack).base)
+    masonry = stack.free_standing
+    lines = masonry.lines
+    base = np.flatnonzero(lines.joint == RigidStack.from_masonry(masonry).base)
     edges = base[np.argsort(lines.at[base, 0])][[0, -1]]
     frequencies = []
     for edge in edges:
         closed = np.ones(len(lines.k), dtype=bool)
         closed[base] = base == edge
-        left = Lines(*(values[closed] for values in lines))  # type: ignore[arg-type]
-        frequencies.append(lowest_frequency(stack.blocks, left, stack.joint_friction))
-    return 2 * STRONG_ABOVE / min(frequencies)
+        closed_lines = Lines(*(values[closed] for values in lines))  # type: ignore[arg-type]
+        frequencies.append(lowest_frequency(masonry.blocks, closed_lines, masonry.joint_friction))
+    return 2 * DAMPING_ABOVE / min(frequencies)
 
 
-def rebound(stack: Masonry, amplitude: float, accuracy: float) -> float:
+def rebound(masonry: Masonry, amplitude: float, accuracy: float) -> float:
     """|e| of the first rebound of a stack that rises as one to a rotation, a share of alpha; 0 without one."""
-    pile = RigidStack.from_masonry(stack)
-    velocity, swing = pile.rising(amplitude)
+    stack = RigidStack.from_masonry(masonry)
+    velocity, swing = stack.rising(amplitude)
     for swings in (1.75, 3.5):  # a stack on soft joints rocks slower than a rigid one
-        case = MasonryCase(stack, swings * swing, velocity=velocity)
-        ratios = restitutions(simulate(case, accuracy=accuracy, output_step=SAMPLE_STEP * swing), pile)
+        case = MasonryCase(masonry, swings * swing, velocity=velocity)
+        ratios = restitutions(simulate(case, accuracy=accuracy, output_step=SAMPLE_STEP * swing), stack)
         if len(ratios):
             return float(ratios[0])
     return 0.0
@@ -285,26 +285,26 @@ def excess(obtained: float, target: float) -> float:
     return (target**2 - obtained**2) / max(1 - target**2, 1e-9)
 
 
-def _found(face: str, closest: Closest, target: float) -> float:
+def _warned_xi(face: str, closest: Closest, target: float) -> float:
     """The damping ratio that is found, with a warning where it loses another energy than required."""
     more = excess(closest.found, target)
-    if abs(more) > MISSED:
+    if abs(more) > ENERGY_MISS_WARNED_OF:
         warn_of(f"{missed(face, closest, target)} and loses {1 + more:.3g} of the energy that is to be lost")
     return closest.xi
 
 
-def restitutions(answer: Response, pile: RigidStack) -> Array:
+def restitutions(answer: Response, stack: RigidStack) -> Array:
     """|e| of each rebound of a stack: the root of the energy at a peak over that at the peak before, shape (rebounds,).
 
     It is the whole energy above the stack at rest, as in `Response.settled_restitution`.
     """
-    energy = answer.energy[peaks(answer, pile)]
+    energy = answer.energy[peaks(answer, stack)]
     return np.asarray(np.sqrt(np.maximum(energy[1:], 0.0) / energy[:-1]))
 
 
-def peaks(answer: Response, pile: RigidStack) -> list[int]:
+def peaks(answer: Response, stack: RigidStack) -> list[int]:
     """The samples at which the rotation of a stack, the mean over its mass, has a maximum to either side."""
-    theta = answer.theta @ pile.masses / pile.masses.sum()
+    theta = answer.theta @ stack.masses / stack.masses.sum()
     beyond = np.sign(theta) * (np.abs(theta) > SMALLEST_REBOUND * np.abs(theta).max())
     starts = np.flatnonzero(np.diff(beyond, prepend=0)).tolist()
     tops = []
