@@ -56,6 +56,11 @@ Density = Annotated[float, Within(100, 30_000, "kg/m3")]
 """Mass density of stone, brick or earth, and of what is heavier."""
 
 
+def require_sample_count(count: float) -> None:
+    """Raise a ValueError for more samples of an answer, over all bodies, than fit into memory."""
+    require_size("the samples of this answer", count, "raise output_step, or shorten the duration")
+
+
 def require_stiffness(name: str, value: object) -> float:
     """Return the stiffness of an interface as a float, see `Stiffness` and `require_within`."""
     within: Within = get_args(Stiffness)[1]

@@ -11,7 +11,7 @@ from ..background_compilation import first_answer
 from ..problem.damping.contacts import Contacts
 from ..problem.masonry.case import AnyCase
 from ..problem.wall.plausibility import warn_if_still
-from ..quantities import Within, require_flag, require_size, require_whole, within_ranges
+from ..quantities import Within, require_flag, require_sample_count, require_size, require_whole, within_ranges
 from ..result.ending import Outcome, Stopwatch
 from ..result.forces import required_room
 from ..result.motion import OutputStep, required_spacing
@@ -114,7 +114,7 @@ def solve_explicit(
         )
     scene, grid = setup.scene, TimeGrid.of_run(setup.step_length, setup.course.duration, timestep, spacing)
     count, bodies = grid.samples, len(scene.bodies.names)
-    require_size("the samples of this answer", count * bodies, "raise output_step, or shorten the duration")
+    require_sample_count(count * bodies)
     books = Books.empty(setup.system, len(scene.contacts.joints) + 1 + setup.has_motion_damping)
     if ledger:
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ..method import Method
-from ..quantities import Within, keep, keep_declared, require_flag, require_kind, require_size
+from ..quantities import Within, keep, keep_declared, require_flag, require_kind, require_sample_count, require_size
 from ..result.motion import OutputStep, required_spacing
 from ..scene.time_step import MUJOCO_STEP, required_timestep
 
@@ -55,7 +55,7 @@ class Options:
         keep(self, timestep=required_timestep(self.timestep, MUJOCO_STEP, self.duration))
         if self.timestep is None:
             samples = self.duration / (self.output_step or SPACING)
-            require_size("the samples of this answer", samples, "raise output_step, or shorten the duration")
+            require_sample_count(samples)
         else:
             steps = self.duration / self.timestep
             require_size("the steps of this run", steps, "take a longer timestep, or fitted steps")

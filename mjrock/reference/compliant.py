@@ -21,7 +21,7 @@ from ..problem.ground.motion import GroundMotion
 from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausibility import warn_if_still, warn_of_low_stop
-from ..quantities import ON_ITS_FACE, Array, Within, require_kind, require_size, within_ranges
+from ..quantities import ON_ITS_FACE, Array, Within, require_kind, require_sample_count, within_ranges
 from ..result.ending import Stopwatch
 from ..result.motion import OutputStep, RelativeError, SampledMotion, intervals, required_spacing, thinned
 from ..result.reading import wall_reading
@@ -81,7 +81,7 @@ def solve_compliant(
     period = 2 * math.pi / contacts.highest_frequency(wall, side_stop=case.one_sided)
     count = intervals(case.duration, spacing)
     parts = intervals(case.duration / count, 1e-3 / wall.p)  # peaks and impacts are read off finer samples
-    require_size("the samples of this answer", count * parts, "raise output_step, or shorten the duration")
+    require_sample_count(count * parts)
     output = np.linspace(0.0, case.duration, count * parts + 1)
     sampled, history, evaluations, switches = _integrated(system, case, output, period, rtol, atol)
     motion = SampledMotion(history[:, None, :3], history[:, None, 3:6], system.energy(history))

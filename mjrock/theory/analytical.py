@@ -18,7 +18,7 @@ from ..problem.masonry.case import require_wall
 from ..problem.wall.case import Case
 from ..problem.wall.plausibility import warn_if_still
 from ..problem.wall.restoring_moment import broken_energy, tie_energy
-from ..quantities import GRAVITY, Array, Implausible, Within, require_kind, require_size, warn_of, within_ranges
+from ..quantities import GRAVITY, Array, Implausible, Within, require_kind, require_sample_count, warn_of, within_ranges
 from ..result.ending import Outcome, Stopwatch, describe
 from ..result.motion import OutputStep, RelativeError, intervals, required_spacing
 from ..result.response import Response, recorded
@@ -74,7 +74,7 @@ def solve_analytical(
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("e", e, Restitution, ScatteredRestitution)
     spacing = required_spacing(output_step, case.duration)
-    require_size("the samples of this answer", case.duration / spacing, "raise output_step, or shorten the duration")
+    require_sample_count(case.duration / spacing)
     _require_solvable(case, e)
     if unlike := e.doubt(case.wall, case.stop_top):
         warn_of(unlike, Implausible)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...geometry.frames import PLANE
 from ...problem.masonry.case import AnyCase
-from ...quantities import Array, require_size, warn_of
+from ...quantities import Array, require_sample_count, require_size, warn_of
 from ...result.bodies import BodyMotion
 from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, KeptForces, forces_of
@@ -198,7 +198,7 @@ def simulate_plain(problem: Problem, options: Options, state: State | None) -> R
         course = course.continued(*state)
     h = options.timestep or plain_timestep(scene, spacing)
     require_size("the steps of this run", case.duration / h, "take a longer timestep")
-    require_size("the samples of this answer", len(scene.bodies.names) * case.duration / spacing, "raise output_step")
+    require_sample_count(len(scene.bodies.names) * case.duration / spacing)
     warn_if_plain_is_slow(scene, course.duration, h)
     model, watch = PlainModel(problem, scene, course), Stopwatch()
     frames = case.rest_geometry.frames
