@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -29,11 +29,11 @@ from ..result.response import Response, recorded
 from ..result.ties import Plastic
 from .equations import Wall
 
-CAUGHT = 1e-3
+RECAUGHT_LOAD = 1e-3
 """Load of an edge at which friction catches it again, as a share of the weight [-]. Friction releases it at no load.
 With a gap between the two, a hardly loaded edge is caught and released at a finite rate. The ideal law would do both at
 once."""
-SWITCHES = 100_000
+MOST_SWITCHES = 100_000
 """Most changes between a held and a free base in one run, which ends an endless loop."""
 
 
@@ -83,13 +83,14 @@ def solve_compliant(
     parts = intervals(case.duration / count, 1e-3 / wall.p)  # peaks and impacts are read off finer samples
     require_sample_count(count * parts)
     output = np.linspace(0.0, case.duration, count * parts + 1)
-    sampled, history, evaluations, switches = _integrated(system, case, output, period, rtol, atol)
-    motion = SampledMotion(history[:, None, :3], history[:, None, 3:6], system.energy(history))
-    reading, kept = wall_reading(case, contacts, sampled, motion), thinned(len(sampled), parts)
+    solution = _integrated(system, case, output, period, rtol, atol)
+    t, states = solution.t, solution.states
+    motion = SampledMotion(states[:, None, :3], states[:, None, 3:6], system.energy(states))
+    reading, kept = wall_reading(case, contacts, t, motion), thinned(len(t), parts)
     response = Response(
         case=case,
         solver="compliant",
-        t=sampled[kept],
+        t=t[kept],
         motion=SampledMotion(motion.pose[kept], motion.velocity[kept], motion.energy[kept]),
         rocking=reading.rocking,
         outcome=reading.outcome,
@@ -101,8 +102,8 @@ def solve_compliant(
         stats={
             **reading.stats,
             **watch.took(),
-            "evaluations": evaluations,
-            "switches": switches,
+            "evaluations": solution.evaluations,
+            "switches": solution.switches,
             "rtol": rtol,
             "atol": atol,
         },
@@ -110,18 +111,31 @@ def solve_compliant(
     return recorded(response, given)
 
 
-def _integrated(
-    system: Wall, case: Case, output: Array, period: float, rtol: float, atol: float
-) -> tuple[Array, Array, int, int]:
-    """The times of the output up to the end [s] and states, and how many evaluations and switches they took.
+class Solution(NamedTuple):
+    """The motion of a wall.
 
-    States have the shape (n, 6 + sliders): behind them stand the places of the sliders of friction dampers. The
-    integration is split where friction catches or releases the base, where a slider begins to slip or to stick, and
+    Args:
+        t: times of the output up to the end [s], shape (n,).
+        states: of the wall, and behind them the places of the sliders of friction dampers, shape (n, 6 + sliders).
+        evaluations: of the equations of motion.
+        switches: how often the base or a slider was caught or released.
+    """
+
+    t: Array
+    states: Array
+    evaluations: int
+    switches: int
+
+
+def _integrated(system: Wall, case: Case, output: Array, period: float, rtol: float, atol: float) -> Solution:
+    """The motion of a wall at the times of the output, which ends where the wall overturns.
+
+    The integration is split where friction catches or releases the base, where a slider begins to slip or to stick, and
     where the ground jumps.
     """
 
     def switch(t: float, y: Array) -> float:
-        return system.edge_load(t, y) - (0.0 if held else CAUGHT * system.weight)
+        return system.edge_load(t, y) - (0.0 if held else RECAUGHT_LOAD * system.weight)
 
     def overturning(t: float, y: Array) -> float:
         return abs(float(y[2])) - ON_ITS_FACE
@@ -134,7 +148,7 @@ def _integrated(
     states, times = [system.with_places(y[:, None])], [np.zeros(1)]
     evaluations = switches = 0
     with Bar("contact law, SciPy", "s", case.duration) as bar:
-        while switches < SWITCHES:
+        while switches < MOST_SWITCHES:
             if held:
                 y = system.caught(y)
             system.settle(y, fired)
@@ -162,14 +176,14 @@ def _integrated(
                 continue
             if arc.status == 0 or arc.t_events[1].size:
                 system.settle(arc.y_events[1][0] if arc.t_events[1].size else arc.y[:, -1], fired)
-                return np.concatenate(times), np.concatenate(states, axis=1).T, evaluations, switches
+                return Solution(np.concatenate(times), np.concatenate(states, axis=1).T, evaluations, switches)
             fired = [bool(when.size) for when in arc.t_events[2:]]
             last = next(i for i, when in enumerate(arc.t_events) if when.size)
             t, y = float(arc.t_events[last][0]), arc.y_events[last][0]
             bar.to(t)
             held = held != bool(arc.t_events[0].size)
             switches += 1
-    raise RuntimeError(f"the base was caught and released {SWITCHES} times by t = {t:g} s; relax rtol or atol")
+    raise RuntimeError(f"the base was caught and released {MOST_SWITCHES} times by t = {t:g} s; relax rtol or atol")
 
 
 def _bends(motion: GroundMotion, t: float, end: float) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Generic, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, fsolve
@@ -17,6 +18,23 @@ from ..quantities import GRAVITY, Array, Real
 
 SLIP_ROUNDING = 1e-9
 """Share of the slip force that is put down to rounding [-]."""
+
+
+class PointForce(NamedTuple):
+    """A force on the wall: its point from the centroid, in the axes of the wall [m], and its components [N]."""
+
+    px: float
+    pz: float
+    fx: float
+    fz: float
+
+
+class Pull(NamedTuple, Generic[Real]):
+    """Elongation of a tie beyond its slack [m], and its direction from the anchor to the wall."""
+
+    elongation: Real
+    across: Real
+    up: Real
 
 
 class Wall:
@@ -51,7 +69,7 @@ class Wall:
             self.heights = self.side.positions + 0.5 * float(case.stop_top or 0.0) - self.up
             self.face = np.array([self._face(height) for height in self.heights])
         self.forces = [
-            (effect.offset - off, effect.height - self.up, force[0], force[2])
+            PointForce(effect.offset - off, effect.height - self.up, fx=force[0], fz=force[2])
             for effect, force in constant_forces_of(case.effects).values()
         ]
         self.ties = [(tie.height - self.up, tie) for tie in case.springs.values() if tie.law.push == 0]
@@ -72,13 +90,13 @@ class Wall:
     def elongations(self, y: Array) -> list[tuple[Array, Array]]:
         """Elongations of the friction dampers from the length drawn [m], and their rates [m/s]."""
         x, z, theta, vx, vz, omega = y
-        found = []
+        elongations = []
         for height, link in self.slipping:
-            longer, across, up = self._pulled(height, link, x, z, theta)
+            pull = self._pull(height, link, x, z, theta)
             px = height * np.cos(theta) + self._face(height) * np.sin(theta)
             pz = self._face(height) * np.cos(theta) - height * np.sin(theta)
-            found.append((longer, across * (vx + omega * px) + up * (vz + omega * pz)))
-        return found
+            elongations.append((pull.elongation, pull.across * (vx + omega * px) + pull.up * (vz + omega * pz)))
+        return elongations
 
     def begin_arc(self, t: float) -> float:
         """Begin an arc at a time, with the jumps of the ground on either side; the end of the arc [s]."""
@@ -124,7 +142,7 @@ class Wall:
 
     def _lowered(self, theta: float) -> float:
         """How far the wall tilted by `theta` is raised when its springs carry weight and loads [m]."""
-        lowest, carried = self.base_gap(0.0, theta), self.weight - sum(force[3] for force in self.forces)
+        lowest, carried = self.base_gap(0.0, theta), self.weight - sum(force.fz for force in self.forces)
 
         def excess(z: float) -> float:
             return float(self.base.stiffness @ np.maximum(-(lowest + z), 0)) - carried
@@ -173,21 +191,21 @@ class Wall:
             versine, sine = 1 - np.cos(theta), np.sin(theta)
             doubled -= 2 * (fx * (x + pz * sine - px * versine) + fz * (z - px * sine - pz * versine))
         for height, tie in self.ties:
-            doubled += tie.law.k * np.maximum(self._pulled(height, tie, x, z, theta)[0], 0) ** 2
+            doubled += tie.law.k * np.maximum(self._pull(height, tie, x, z, theta).elongation, 0) ** 2
         for (height, link), place in zip(self.slipping, history.T[6:], strict=True):
-            doubled += link.law.k * (self._pulled(height, link, x, z, theta)[0] - place) ** 2
+            doubled += link.law.k * (self._pull(height, link, x, z, theta).elongation - place) ** 2
         return np.asarray(doubled / 2)
 
-    def _pulled(self, height: float, tie: Anchored, x: Real, z: Real, theta: Real) -> tuple[Real, Real, Real]:
-        """Elongation of a tie beyond its slack [m], and its direction from the anchor to the wall."""
+    def _pull(self, height: float, tie: Anchored, x: Real, z: Real, theta: Real) -> Pull[Real]:
+        """How a tie at a height above the centroid [m] pulls in a pose."""
         face = self._face(height)
         across = tie.length + x + face * (1 - np.cos(theta)) + height * np.sin(theta)
         up = z + face * np.sin(theta) - height * (1 - np.cos(theta)) - tie.rise
         length = np.hypot(across, up)
-        return length - tie.law.reach, across / length, up / length
+        return Pull(length - tie.law.reach, across / length, up / length)
 
-    def _damped(self, damper: Anchored, y: Array) -> tuple[float, float, float, float]:
-        """Point of a damper from the centroid at rest [m], and its force on the wall [N], x before z each."""
+    def _damper_force(self, damper: Anchored, y: Array) -> PointForce:
+        """The force of a damper on the wall."""
         x, z, theta, vx, vz, omega = y
         px, pz = -self._face(damper.height - self.up), damper.height - self.up
         sine, cosine = math.sin(theta), math.cos(theta)
@@ -196,7 +214,11 @@ class Wall:
         length = math.hypot(across, above)
         rate_across, rate_above = vx + omega * (pz * cosine - px * sine), vz - omega * (px * cosine + pz * sine)
         force = -resistance(damper.law, (across * rate_across + above * rate_above) / length)
-        return px, pz, force * across / length, force * above / length
+        return PointForce(px, pz, force * across / length, force * above / length)
+
+    def _towards_anchor(self, height: float, pull: Pull[float], force: float) -> PointForce:
+        """The force of a link [N] at a height above the centroid [m] on the wall."""
+        return PointForce(-self._face(height), height, -pull.across * force, -pull.up * force)
 
     def base_forces(self, y: Array) -> tuple[Array, Array]:
         """Signed forces of the base points before clipping [N], and their levers about the centroid [m]."""
@@ -232,17 +254,15 @@ class Wall:
             push = -(self.side.stiffness * gap + self.side.damping * (vx + omega * height))
             push = np.where(gap < 0, np.maximum(push, 0), 0)
             Fx, moment = float(push.sum()), moment + float(push @ height)
-        pulls = [(-self._face(at), at, *self._pulled(at, tie, x, z, theta), tie) for at, tie in self.ties]
-        applied = self.forces + [
-            (px, pz, -nx * pull, -nz * pull)
-            for px, pz, stretched, nx, nz, tie in pulls
-            if (pull := tie.law.k * max(stretched, 0.0)) > 0
-        ]
-        applied += [self._damped(damper, y) for damper in self.dampers]
+        applied = list(self.forces)
+        for at, tie in self.ties:
+            pull = self._pull(at, tie, x, z, theta)
+            if (force_of_tie := tie.law.k * max(pull.elongation, 0.0)) > 0:
+                applied.append(self._towards_anchor(at, pull, force_of_tie))
+        applied += [self._damper_force(damper, y) for damper in self.dampers]
         for slider, (at, link) in zip(self.sliders.values(), self.slipping, strict=True):
-            longer, across, up = self._pulled(at, link, x, z, theta)
-            pull = slider.pull(longer)
-            applied.append((-self._face(at), at, -across * pull, -up * pull))
+            pull = self._pull(at, link, x, z, theta)
+            applied.append(self._towards_anchor(at, pull, slider.pull(pull.elongation)))
         sine, cosine = math.sin(theta), math.cos(theta)
         for px, pz, fx, fz in applied:
             Fx, Fz = Fx + fx, Fz + fz

@@ -293,8 +293,8 @@ UNEVEN_ROUNDED = 0.1
 SLOW_SAMPLING = 0.1
 """Time steps from here on [s] are doubted: no accelerograph is so slow, and the column may be of row numbers."""
 HEADER_RATIO, NUMBERS_COMPARED = 5.0, 10
-"""A first number may be one of the header where it is the largest, and beyond this ratio to the numbers after it, of
-which so many are compared."""
+"""A first number that is the largest, and this many times as large as the numbers after it, is doubted: it may be one
+of the header. How many numbers after it are compared."""
 ROWS = "rows"
 """What `columns` is where the samples stand in rows, one after the other."""
 SMOOTH_ROWS = 0.7
