@@ -31,17 +31,17 @@ from ..wall.case import Case
 from .law import CALIBRATED, CALIBRATED_BED, HIGHEST_XI, Amplitude, DampingLaw, law_named, rebound_over_uplift
 from .restitution import ANOTHER_WALL, Restitution, StopTop
 
-HOLDS_NEARLY = 10.0
+NEARLY_HELD = 10.0
 """Friction coefficient from which a base holds a wall nearly as one that holds without a bound does [-]."""
 PointCount = Annotated[int, Within(2, 1000, name="contact points", whole=True)]
 """Contact lines of a face."""
-OfInterface = Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")]
+InterfaceStiffness = Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")]
 """Stiffness of an interface."""
-OfBase = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
+BaseStiffness = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
 """Stiffness of the base of a wall."""
-OfSide = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")]
+SideStiffness = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")]
 """Stiffness of the side stop of a wall, None without one."""
-Rubbing = Annotated[float | None, Within(0, 10)]
+FaceFriction = Annotated[float | None, Within(0, 10)]
 """Coefficient of friction of an interface, see `Interface`."""
 DampingFunction = Callable[[Block, Restitution, float], tuple[float, float]]
 """A law of the user, called as law(wall, e, k_base) to give the damping ratios of base and side."""
@@ -62,7 +62,7 @@ def contact_lines(face: float, points: PointCount) -> tuple[Array, Array]:
 
 
 @within_ranges
-def reference_frequency(wall: Block, k_n: OfInterface, points: int = 2) -> float:
+def reference_frequency(wall: Block, k_n: InterfaceStiffness, points: int = 2) -> float:
     """The frequency omega [rad/s] that turns a damping ratio into a dashpot, c_i = (2 xi / omega) k_i.
 
     omega = sqrt(K_rot / I_base): the wall rocking in full contact about the centre of its base, K_rot = sum k_i x_i^2
@@ -113,13 +113,13 @@ class Interface:
         ValueError: for a value outside its range.
     """
 
-    k_n: OfInterface
+    k_n: InterfaceStiffness
     xi: Xi
     face: Annotated[float, Within(1e-3, 1000, "m")]
     length: Annotated[float, Within(1e-3, 1000, "m")]
     frequency: Annotated[float, Within(1e-3, 1e9, "rad/s", "reference frequency")]
     points: PointCount = 2
-    friction: Rubbing = None
+    friction: FaceFriction = None
 
     def __post_init__(self) -> None:
         keep_declared(self)
@@ -131,9 +131,11 @@ class Interface:
             )
 
     def __repr__(self) -> str:
-        held = "" if self.friction is None else f", friction {self.friction:.3g}"
+        friction = "" if self.friction is None else f", friction {self.friction:.3g}"
         size = f"{self.face:.6g} x {self.length:.6g} m, {self.points} lines"
-        return f"<Interface k_n = {self.k_n:.4g} N/m3, xi = {self.xi:.4g}{held}: {size}, {self.frequency:.4g} rad/s>"
+        return (
+            f"<Interface k_n = {self.k_n:.4g} N/m3, xi = {self.xi:.4g}{friction}: {size}, {self.frequency:.4g} rad/s>"
+        )
 
     @cached_property
     def _lines(self) -> tuple[Array, Array]:
@@ -169,12 +171,12 @@ def _predicted(law: DampingFunction, wall: Block, e: Restitution, k_base: float)
     """The two damping ratios of a law of the user, or a TypeError that names the law."""
     refusal = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     try:
-        given: object = law(wall, e, k_base)
+        returned: object = law(wall, e, k_base)
     except TypeError as error:
         raise TypeError(f"{refusal}: {error}") from None
-    if not is_iterable(given) or not isinstance(given, Sequence | np.ndarray) or len(given) != 2:
-        raise TypeError(f"{refusal}: it gives {shown(given)}")
-    xi_base, xi_side = given
+    if not is_iterable(returned) or not isinstance(returned, Sequence | np.ndarray) or len(returned) != 2:
+        raise TypeError(f"{refusal}: it gives {shown(returned)}")
+    xi_base, xi_side = returned
     return require_real("xi of the base from the law", xi_base), require_real("xi of the side from the law", xi_side)
 
 
@@ -189,10 +191,10 @@ def required_law(law: AnyLaw | str | None, points: int = 2) -> AnyLaw:
     return law
 
 
-def _doubts(
+def _unlike_fit(
     law: DampingLaw, points: int, k_side: float | None, friction: float | None, side_friction: float | None
 ) -> Iterator[str]:
-    """Why a law does not hold for contacts that it was not fitted for, in words."""
+    """How contacts differ from those that a law was fitted for, in words."""
     if law.points not in (None, points):
         yield f"{law.name} was fitted for {law.points} contact lines a face, not {points}"
     if law.points is None and k_side is not None:
@@ -200,7 +202,7 @@ def _doubts(
             f"{law.name} was fitted in another code. Against a side stop its |e| is off by -43 to +119 % on the "
             "contacts of this one (docs/damping.md); CALIBRATED is made for them"
         )
-    if side_friction or (friction is not None and friction < HOLDS_NEARLY):
+    if side_friction or (friction is not None and friction < NEARLY_HELD):
         yield (
             f"{law.name} was fitted for a base that holds and a smooth side, not for friction = {friction} and "
             f"side_friction = {side_friction}; matched_contacts finds the damping for them"
@@ -232,8 +234,8 @@ class Contacts:
     def __repr__(self) -> str:
         parts = []
         for name, interface in zip(("base", "side"), self.faces(side_stop=True), strict=False):
-            held = "" if interface.friction is None else f", friction {interface.friction:.3g}"
-            parts.append(f"{name} k_n = {interface.k_n:.4g} N/m3, xi = {interface.xi:.4g}{held}")
+            friction = "" if interface.friction is None else f", friction {interface.friction:.3g}"
+            parts.append(f"{name} k_n = {interface.k_n:.4g} N/m3, xi = {interface.xi:.4g}{friction}")
         return f"<Contacts, law {self.law}, {self.base.points} lines a face: {'; '.join(parts)}>"
 
     @classmethod
@@ -242,13 +244,13 @@ class Contacts:
         cls,
         wall: Block,
         *,
-        k_base: OfBase,
+        k_base: BaseStiffness,
         xi_base: Xi,
-        k_side: OfSide = None,
+        k_side: SideStiffness = None,
         xi_side: Xi = 0.0,
         points: PointCount = 2,
-        friction: Rubbing = None,
-        side_friction: Rubbing = None,
+        friction: FaceFriction = None,
+        side_friction: FaceFriction = None,
         law: str = "given",
         stop_top: StopTop = None,
     ) -> Contacts:
@@ -272,9 +274,9 @@ class Contacts:
         side = None
         if k_side is not None:
             side = Interface(k_side, xi_side, 2 * wall.h, wall.length, omega, points, side_friction)
-        toppling = wall.weight * wall.centroid_height
-        if base.K_rot <= toppling:
-            least = k_base * toppling / base.K_rot
+        overturning = wall.weight * wall.centroid_height  # moment for a unit of rotation
+        if base.K_rot <= overturning:
+            least = k_base * overturning / base.K_rot
             raise ValueError(
                 f"base stiffness k_n = {k_base:g} N/m3 cannot hold the wall upright; "
                 f"the valid range is k_n > {least:.3g} N/m3"
@@ -287,13 +289,13 @@ class Contacts:
         cls,
         wall: Block,
         e: Restitution,
-        k_base: OfBase,
-        k_side: OfSide = None,
+        k_base: BaseStiffness,
+        k_side: SideStiffness = None,
         law: AnyLaw | str | None = None,
         points: PointCount = 2,
         amplitude: Amplitude = 0.5,
-        friction: Rubbing = None,
-        side_friction: Rubbing = None,
+        friction: FaceFriction = None,
+        side_friction: FaceFriction = None,
     ) -> Contacts:
         """Interfaces of `wall` whose damping ratios the law predicts, in the chosen layout.
 
@@ -325,17 +327,17 @@ class Contacts:
             e.require_rebound()
         if isinstance(law, DampingLaw):
             xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
-            for doubt in _doubts(law, points, k_side, friction, side_friction):
-                warn_of(doubt)
+            for difference in _unlike_fit(law, points, k_side, friction, side_friction):
+                warn_of(difference)
         else:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
         if unlikely := e.doubt(wall, None):
             warn_of(unlikely, Implausible)
-        if k_side is not None and (lifts := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
+        if k_side is not None and (rebound := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
             warn_of(
                 f"no rebound can lift an edge as e asks for it from {amplitude:g} alpha: it would turn the wall "
-                f"{lifts:.2g} times as far as it takes to lift one off a base of {k_base:g} N/m3; the rebound is then "
-                f"elastic or larger than required. Give a base above {k_base / max(lifts, 1e-9):.2g} N/m3"
+                f"{rebound:.2g} times as far as it takes to lift one off a base of {k_base:g} N/m3; the rebound is then"
+                f" elastic or larger than required. Give a base above {k_base / max(rebound, 1e-9):.2g} N/m3"
             )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(
@@ -371,10 +373,10 @@ class Contacts:
                 f"matched_contacts(..., side_stop=SideStop({top:.4g}))",
                 Implausible,
             )
-        return self._stopping if top == self._stopping.face else replace(self._stopping, face=top)
+        return self._required_side if top == self._required_side.face else replace(self._required_side, face=top)
 
     @property
-    def _stopping(self) -> Interface:
+    def _required_side(self) -> Interface:
         if self.side is None:
             raise ValueError("the case has a side stop but the contacts have none; give k_side when making them")
         return self.side
@@ -383,7 +385,7 @@ class Contacts:
         """Raise ValueError unless these interfaces have the size of `wall`, and a side where the case has a stop."""
         faces = [("base", self.base, (2 * wall.half_base, wall.base_length))]
         if side_stop:
-            faces.append(("side", self._stopping, (2 * wall.h, wall.length)))
+            faces.append(("side", self._required_side, (2 * wall.h, wall.length)))
         for name, interface, required in faces:
             size = interface.face, interface.length
             if not all(math.isclose(given, needed, rel_tol=1e-9) for given, needed in zip(size, required, strict=True)):

@@ -245,9 +245,9 @@ LEAST_XI, HIGHEST_XI = 1e-3, 0.3
 """Damping ratios of the base between which a calibrated law is fitted, and which it never leaves [-]."""
 REACH_MARGIN = 0.03
 """Share of the reach of a base, at either end, in which hardly any change of damping changes the restitution [-]."""
-SIZE = 2.0
+LEAST_REBOUND = 2.0
 """Rebound over the uplift rotation from which a law can be expected to give it [-]."""
-POSITIVE = ("coefficient", "scale", "floor", "bounce", "inertia", "weight")
+POSITIVE_COEFFICIENTS = ("coefficient", "scale", "floor", "bounce", "inertia", "weight")
 """Coefficients of the formulas that cannot be negative."""
 DENSITY = 2000.0
 """Density of the walls that laws are fitted on [kg/m3]."""
@@ -305,7 +305,7 @@ class DampingLaw:
         for part, form in (("base", self.base), ("side", self.side)):
             require_kind(part, form, *FORMS.values())
             checked = {
-                key: require_within(f"{part}.{key}", value, 0.0 if key in POSITIVE else -1e6, 1e6)
+                key: require_within(f"{part}.{key}", value, 0.0 if key in POSITIVE_COEFFICIENTS else -1e6, 1e6)
                 for key, value in asdict(form).items()  # type: ignore[call-overload]
                 if key != "r_squared"
             }
@@ -376,9 +376,9 @@ class DampingLaw:
         """Whether the law can be expected to give the required restitution.
 
         It can where the wall lies within the fitted ranges, where `e.base` lies within the reach of the base and at
-        least REACH_MARGIN of it away from its ends, and where the first rebound against a side turns the wall SIZE
-        times as far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic motion of the
-        base.
+        least REACH_MARGIN of it away from its ends, and where the first rebound against a side turns the wall
+        LEAST_REBOUND times as far as it takes to lift an edge off its base. Below that a rebound is mostly an elastic
+        motion of the base.
 
         Args:
             wall, e, k_n, k_side, amplitude: as those of `__call__`.
@@ -392,7 +392,7 @@ class DampingLaw:
         return (
             not self._outside(wall, e, k_n, k_side)
             and low + margin <= e.base <= high - margin
-            and rebound_over_uplift(wall, e, k_n, amplitude) > SIZE
+            and rebound_over_uplift(wall, e, k_n, amplitude) > LEAST_REBOUND
         )
 
     def _outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> list[str]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -79,20 +79,22 @@ def measured_contact(
             than the height before it, or times without a mass.
     """
     ratios, release = _ratios(heights)
-    e, low, high = _interval(ratios, confidence, 0.0, 1.0)
+    mean = _mean_of(ratios, confidence, 0.0, 1.0)
+    e, interval = mean.value, (mean.low, mean.high)
     if contact_times is None:
-        return MeasuredContact(e, (low, high), rebound_damping(max(e, LOWEST_RESTITUTION)), None, None, len(ratios), 0)
+        return MeasuredContact(e, interval, rebound_damping(max(e, LOWEST_RESTITUTION)), None, None, len(ratios), 0)
     if mass is None:
         raise ValueError("contact_times are given without mass; the stiffness needs it")
     times = require_row("contact_times", contact_times, "time of contact")
     if times.min() < 1e-9 or times.max() > 1e3:
         raise ValueError(f"contact_times hold {times.min():g} to {times.max():g} s; the valid range is 1e-09 to 1000 s")
-    mean, short, long = _interval(times, confidence, 0.0, math.inf)
+    time = _mean_of(times, confidence, 0.0, math.inf)
     speed = math.sqrt(2 * gravity * release)
-    k, softest, stiffest = (mass * _frequency(time, e, gravity, speed) ** 2 for time in (mean, long, short))
+    ends = time.value, time.high, time.low
+    k, softest, stiffest = (mass * _frequency(one, e, gravity, speed) ** 2 for one in ends)
     omega = math.sqrt(k / mass)
     xi = falling_damping(max(e, LOWEST_RESTITUTION), min(gravity / (omega * speed), MOST_PULL))
-    return MeasuredContact(e, (low, high), xi, k, (softest, stiffest), len(ratios), len(times))
+    return MeasuredContact(e, interval, xi, k, (softest, stiffest), len(ratios), len(times))
 
 
 @within_ranges
@@ -159,15 +161,23 @@ def _ratios(heights: object) -> tuple[Array, float]:
     return ratios, float(np.mean([drop[0] for drop in drops]))
 
 
-def _interval(values: Array, level: float, least: float, most: float) -> tuple[float, float, float]:
+class Mean(NamedTuple):
+    """The mean of measured values, and the ends of its confidence interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+def _mean_of(values: Array, level: float, least: float, most: float) -> Mean:
     """Mean, and Student's interval of the mean within what is possible."""
     mean = float(values.mean())
     if len(values) < 2:
-        return mean, least, most
+        return Mean(mean, least, most)
     from scipy.special import stdtrit
 
     half = float(stdtrit(len(values) - 1, 0.5 + level / 2) * values.std(ddof=1) / math.sqrt(len(values)))
-    return mean, max(least, mean - half), min(most, mean + half)
+    return Mean(mean, max(least, mean - half), min(most, mean + half))
 
 
 def _frequency(time: float, e: float, gravity: float, speed: float) -> float:

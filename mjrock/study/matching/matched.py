@@ -15,7 +15,14 @@ import numpy as np
 
 from ...bars import Bar
 from ...engine.simulation import simulate
-from ...problem.damping.contacts import Contacts, OfBase, OfSide, PointCount, Rubbing, reference_frequency
+from ...problem.damping.contacts import (
+    BaseStiffness,
+    Contacts,
+    FaceFriction,
+    PointCount,
+    SideStiffness,
+    reference_frequency,
+)
 from ...problem.damping.restitution import Restitution
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.laws.joint_table import ByName
@@ -69,13 +76,13 @@ SMALLEST_REBOUND = 0.01
 def matched_contacts(
     wall: Block,
     e: Restitution,
-    k_base: OfBase,
-    k_side: OfSide = None,
+    k_base: BaseStiffness,
+    k_side: SideStiffness = None,
     *,
     points: PointCount = 2,
     amplitude: Annotated[float, Within(0.01, 0.95)] = 0.5,
-    friction: Rubbing = None,
-    side_friction: Rubbing = None,
+    friction: FaceFriction = None,
+    side_friction: FaceFriction = None,
     side_stop: bool | SideStop = True,
     accuracy: Annotated[float, Within(1e-8, 0.1)] = 1e-4,
 ) -> Contacts:
