@@ -22,12 +22,12 @@ from .declarations import REQUIRED, Key, Maker, maker_of
 from .documents import UnwrittenError, mechanism_table, values_of
 from .mechanisms import Mechanism, mechanisms_of
 from .reading import Reader, caused
-from .tables import LARGEST, AssessmentError, Document, Fault, Place, Table, line_of, located, parsed
+from .tables import MOST_CHARACTERS, AssessmentError, Document, Fault, Place, Table, line_of, located, parsed
 
 if TYPE_CHECKING:  # tasks bring MuJoCo, which a kinematic check does not need
     from ..study.analysis import Analysis
 
-OF_ALL = {
+FILE_KEYS = {
     "language": Key("language", Literal["en", "it"], "en", "of check and report"),
     "project": Key("project", Mapping[str, str], None, "title block of the report"),
 }
@@ -41,7 +41,7 @@ DESIGN = Maker(
     "The first of some values for which every condition holds.",
 )
 """What `[design]` has, beside the values that are tried."""
-OF_EACH = "checks", "e", "contacts"
+KEYS_BY_MECHANISM = "checks", "e", "contacts"
 """Arguments of `report` that may be mappings by mechanism."""
 
 
@@ -83,7 +83,7 @@ class Assessment:
         Raises:
             AssessmentError: with the line of the mechanism that cannot be checked, and why.
         """
-        return {name: self._of(one, one.check) for name, one in self.mechanisms.items()}
+        return {name: self._called(one, one.check) for name, one in self.mechanisms.items()}
 
     def analyses(self) -> dict[str, list[Analysis]]:
         """Tasks of all runs for `campaign`, by mechanism: each record in both polarities, or the release.
@@ -93,12 +93,12 @@ class Assessment:
         Raises:
             AssessmentError: with the line of the mechanism that cannot be run, and why.
         """
-        return {name: self._of(one, one.analyses) for name, one in (self.moved or self.mechanisms).items()}
+        return {name: self._called(one, one.analyses) for name, one in (self.moved or self.mechanisms).items()}
 
     def run(self) -> dict[str, list[Response]]:
         """The responses of all runs, by mechanism, see `analyses`."""
         return {
-            name: [self._of(self.mechanisms[name], task.solve) for task in tasks]
+            name: [self._called(self.mechanisms[name], task.solve) for task in tasks]
             for name, tasks in self.analyses().items()
         }
 
@@ -109,7 +109,7 @@ class Assessment:
             runs: responses by mechanism, such as those of `run`.
         """
         found = {name: self.mechanisms[name] for name in runs}
-        return {name: self._of(one, partial(one.dynamic, runs[name])) for name, one in found.items()}
+        return {name: self._called(one, partial(one.dynamic, runs[name])) for name, one in found.items()}
 
     def design(self) -> Design:
         """The first of the values of `[design]` for which every condition holds.
@@ -153,7 +153,7 @@ class Assessment:
         checks: dict[str, Any] = {name: [one] for name, one in self.check().items()} if self.has_site else {}
         for name, of in (runs or {}).items():
             one = self.mechanisms[name]
-            if (found := self._of(one, partial(one.verdict_on, of))) is not None:
+            if (found := self._called(one, partial(one.verdict_on, of))) is not None:
                 checks.setdefault(name, []).append(found)
         shown = dict(runs or {})
         impacts = {name: self.mechanisms[name].shaking for name in shown}
@@ -169,7 +169,7 @@ class Assessment:
             key = words("design_of", key=self.trials["key"])
             given["sections"] = {words("design"): [key, self.design()]}
         if list(self.mechanisms) == [""]:
-            given |= {name: value[""] for name, value in given.items() if name in OF_EACH and value}
+            given |= {name: value[""] for name, value in given.items() if name in KEYS_BY_MECHANISM and value}
         responses: Any = shown.get("", ()) if "" in self.mechanisms else shown or ()
         return report(first, responses, path, **given, **self.texts)
 
@@ -193,12 +193,12 @@ class Assessment:
             AssessmentError: with the key, for what a file has no words for, such as functions.
         """
         is_read = bool(self.document) and assessment_of(self.document, folder=self.folder) == self
-        text = toml_text(self.document if is_read else self._made())
+        text = toml_text(self.document if is_read else self._tables())
         if path is not None:
             write_text(require_path("path", path), text)
         return text
 
-    def _made(self) -> dict[str, object]:
+    def _tables(self) -> dict[str, object]:
         """Its tables, from the objects."""
         found: dict[str, object] = {} if self.language == "en" else {"language": self.language}
         found |= {name: dict(one) for name, one in (("project", self.project), ("design", self.trials)) if one}
@@ -221,7 +221,7 @@ class Assessment:
                     )
         return found
 
-    def _of(self, mechanism: Mechanism, call: Callable[[], Any]) -> Any:
+    def _called(self, mechanism: Mechanism, call: Callable[[], Any]) -> Any:
         """What a function of a mechanism returns; its error names the table."""
         try:
             return call()
@@ -275,7 +275,7 @@ def from_toml(path: str | Path | None = None, *, text: str | None = None) -> Ass
     if (path is None) == (text is None):
         raise TypeError("from_toml takes a path, or a text")
     if text is not None:
-        return assessment_of_text(require_text("text", text, LARGEST))
+        return assessment_of_text(require_text("text", text, MOST_CHARACTERS))
     path = require_path("path", path)
     return assessment_of_text(read_text(path), str(path), path.parent)
 
@@ -287,8 +287,8 @@ def read_text(path: Path) -> str:
         AssessmentError: for one that is too large or no text in UTF-8.
     """
     size = require_file(path).stat().st_size
-    if size > 4 * LARGEST:
-        large = Message("has {size} bytes; the valid range is 0 to {most}", size=size, most=4 * LARGEST)
+    if size > 4 * MOST_CHARACTERS:
+        large = Message("has {size} bytes; the valid range is 0 to {most}", size=size, most=4 * MOST_CHARACTERS)
         raise AssessmentError((Fault((), large),), str(path))
     return decoded(path.read_bytes(), str(path))
 
@@ -341,12 +341,12 @@ def assessment_of(
     reader = Reader(folder, source, name, confined=confined)
     top: Table = located(document)
     whole: dict[str, Any] = {}
-    for name_of in OF_ALL.keys() & top.values.keys():
-        whole[name_of] = reader.attempted(partial(reader.value, OF_ALL[name_of], top.values[name_of], (name_of,)))
+    for name_of in FILE_KEYS.keys() & top.values.keys():
+        whole[name_of] = reader.attempted(partial(reader.value, FILE_KEYS[name_of], top.values[name_of], (name_of,)))
     reader.language = whole.get("language") or reader.language
     texts = reader.attempted(partial(_texts, reader, top)) or {}
     trials = reader.attempted(partial(_trials, reader, top, document))
-    mechanisms = mechanisms_of(reader, top.without(*OF_ALL, "report", "design"))
+    mechanisms = mechanisms_of(reader, top.without(*FILE_KEYS, "report", "design"))
     if not mechanisms and not reader.faults:
         reader.refusal((), "{place} has no mechanism; give it a table [wall], or several under [mechanisms.NAME]")
     reader.require_sound()

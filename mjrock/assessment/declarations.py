@@ -25,8 +25,8 @@ REQUIRED = MISSING
 """The default of an argument that has none."""
 USUAL_MAKE = {"Block": "from_size", "Restitution": "from_geometry", "Contacts": "from_law"}
 """The constructor of a class where a table names none, by the name of the class; of others it is the class itself."""
-ENTRY = re.compile(r"^ {4}((?:\w+, )*\w+): ")
-AS_OF = re.compile(r"(?:as|those) of `(\w+)`")
+ARGUMENT_ENTRY = re.compile(r"^ {4}((?:\w+, )*\w+): ")
+SHARED_DOC = re.compile(r"(?:as|those) of `(\w+)`")
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ def described(call: Callable[..., object]) -> dict[str, str]:
     found: dict[str, str] = {}
     names: list[str] = []
     for line in _section(inspect.getdoc(call) or "", "Args").splitlines():
-        if entry := ENTRY.match(line):
+        if entry := ARGUMENT_ENTRY.match(line):
             names = entry[1].split(", ")
             found |= {name: line[entry.end() :] for name in names}
         else:
@@ -160,7 +160,7 @@ def maker_of(call: Callable[..., object], owner: type | None = None) -> Maker:
         elif one.kind is not one.VAR_POSITIONAL:
             default = REQUIRED if one.default is one.empty else one.default
             doc = docs.get(one.name, "")
-            if owner is not None and ((shared := AS_OF.search(doc)) or not doc):
+            if owner is not None and ((shared := SHARED_DOC.search(doc)) or not doc):
                 doc = _as_of(owner, shared[1] if shared else "", one.name) or doc
             key = Key(one.name, hints.get(one.name, Any), default, doc)
             own |= {one.name: key} if key.kinds or default is REQUIRED else {}

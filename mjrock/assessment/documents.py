@@ -21,8 +21,8 @@ from .tables import Place, spelt_place
 
 Tables = dict[str, Any]
 """Tables of a file that are made."""
-FOUND = "joints"
-"""Attributes that are not what was given by their name: the joints of masonry are those that were found."""
+DERIVED = "joints"
+"""The attribute that is not the argument of its name: the joints of masonry are those that its blocks have."""
 
 
 class UnwrittenError(ValueError):
@@ -47,29 +47,29 @@ def table_of(value: Any, kinds: Sequence[Hint], place: Place) -> Tables:
         place: the key.
     """
     kind: Any = type(value)
-    found: Tables = {} if list(classes_of(kinds)) == [kind.__name__] else {"kind": kind.__name__}
-    keys = {name: key for name, key in maker_of(kind, kind).keys.items() if name != FOUND and hasattr(value, name)}
+    table: Tables = {} if list(classes_of(kinds)) == [kind.__name__] else {"kind": kind.__name__}
+    keys = {name: key for name, key in maker_of(kind, kind).keys.items() if name != DERIVED and hasattr(value, name)}
     if kind is Block:  # in whole sizes, as one writes it
-        found |= {"thickness": 2 * value.b, "height": 2 * value.h}
+        table |= {"thickness": 2 * value.b, "height": 2 * value.h}
         keys = {name: key for name, key in keys.items() if name not in ("b", "h")}
     elif kind.__name__ in USUAL_MAKE:
-        found["make"] = kind.__name__
+        table["make"] = kind.__name__
     given = {name: getattr(value, name) for name in keys}
-    return found | values_of(
+    return table | values_of(
         {name: one for name, one in given.items() if not _same(one, keys[name].default)}, keys, place
     )
 
 
 def values_of(values: Mapping[str, Any], keys: Mapping[str, Key], place: Place) -> Tables:
     """Arguments by name as the keys of a table. None is left out."""
-    found: Tables = {}
+    table: Tables = {}
     for name, value in values.items():
         if name not in keys:
             raise UnwrittenError((*place, name), f"= {shown(value)} is no key of a file; leave it out")
         key = keys[name]
         if value is not None:
-            found[key_named(key)] = plain(value, key.kinds, (*place, key_named(key)))
-    return found
+            table[key_named(key)] = plain(value, key.kinds, (*place, key_named(key)))
+    return table
 
 
 def plain(value: object, kinds: Sequence[Hint], place: Place) -> Any:
@@ -114,24 +114,24 @@ def mechanism_table(mechanism: Mechanism, place: Place = ()) -> Tables:
     problem, shaking = mechanism.problem, mechanism.shaking
     if type(problem).__name__ not in MECHANISMS:
         raise UnwrittenError((*place, "problem"), f"= {shown(problem)} is not one of {', '.join(MECHANISMS)}")
-    found: Tables = {"kind": type(problem).__name__} | table_of(problem, (type(problem),), place)
-    found |= _demand(mechanism.demand, place)
+    table: Tables = {"kind": type(problem).__name__} | table_of(problem, (type(problem),), place)
+    table |= _demand(mechanism.demand, place)
     sections: dict[str, Any] = {"check": (mechanism.options, CHECK), "limit_curve": (mechanism.curve, CURVE)}
     for name, (values, maker) in (sections | {"dynamic_check": (shaking.dynamic, DYNAMIC)}).items():
-        found |= {name: values_of(values, maker.keys, (*place, name))} if values else {}
-    if shaking.records and "floor" in found:
+        table |= {name: values_of(values, maker.keys, (*place, name))} if values else {}
+    if shaking.records and "floor" in table:
         raise UnwrittenError((*place, "records"), "are those of the floor, and a file has those of the ground")
     for name, value in (("restitution", shaking.e), ("contacts", shaking.contacts)):
-        found |= {} if value is None else {name: table_of(value, (type(value),), (*place, name))}
+        table |= {} if value is None else {name: table_of(value, (type(value),), (*place, name))}
     if shaking.records:
-        found["records"] = [
+        table["records"] = [
             {"kind": "GroundMotion"} | table_of(one, (type(one),), (*place, "records", i))
             for i, one in enumerate(shaking.records)
         ]
     options = values_of(shaking.options, run_maker(shaking.solver).keys, (*place, "run"))
     usual = {"solver": usual_solver(getattr(mechanism.case, "block", None)), "polarities": True}
     run = {name: getattr(shaking, name) for name, one in usual.items() if getattr(shaking, name) != one} | options
-    return found | ({"run": run} if run else {})
+    return table | ({"run": run} if run else {})
 
 
 def _demand(demand: object, place: Place) -> Tables:

@@ -156,7 +156,7 @@ def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:
     """The mechanisms of a file by name: those under `mechanisms`, or the one at the top, whose name is empty."""
     several = top.values.get("mechanisms")
     if several is None:
-        return _found({"": _mechanism(reader, top, set(top.values), set())})
+        return _sound({"": _mechanism(reader, top, set(top.values), set())})
     if not isinstance(several, Table) or not all(isinstance(one, Table) for one in several.values.values()):
         reader.refusal(("mechanisms",), "{place} is no table of tables; write [mechanisms.NAME] for each")
         return {}
@@ -164,10 +164,10 @@ def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:
     made = {name: _mechanism(reader, own.over(shared), set(own.values), used) for name, own in several.values.items()}
     for key in shared.values.keys() - used:
         reader.refusal((key,), "{place} is not known here: no mechanism takes it")
-    return _found(made)
+    return _sound(made)
 
 
-def _found(made: Mapping[str, Mechanism | None]) -> dict[str, Mechanism]:
+def _sound(made: Mapping[str, Mechanism | None]) -> dict[str, Mechanism]:
     return {name: one for name, one in made.items() if one is not None}
 
 

@@ -34,7 +34,7 @@ Object = TypeVar("Object")
 NUMERIC = (float, int, np.ndarray)
 OWN_KEYS = "kind", "make"
 """Keys that name the class, and the constructor of the class, that a table stands for."""
-LEADING = re.compile(r"(\w+)(?:\[(\d+)\])?")
+FIRST_WORD = re.compile(r"(\w+)(?:\[(\d+)\])?")
 """The first word of a message, which is most often the name of an argument."""
 
 
@@ -311,7 +311,7 @@ def _named_in(message: str, table: Table, names: Mapping[str, str]) -> Place:
         names: keys of arguments that have another name.
     """
     place = table.place
-    for word, index in LEADING.findall(message):
+    for word, index in FIRST_WORD.findall(message):
         name = names.get(word, word)
         if name not in table.values:
             continue

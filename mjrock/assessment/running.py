@@ -28,7 +28,7 @@ DYNAMIC = maker_of(dynamic_check).without("runs", "curve", "store", "histories",
 """What `[dynamic_check]` stands for."""
 SOLVERS = "analytical", "explicit", "MuJoCo", "compliant"
 """The solvers, the quickest of a wall first."""
-GIVEN = "case", "contacts", "e", "start", "method"
+NOT_IN_FILE = "case", "contacts", "e", "start", "method"
 """Arguments of solvers that do not come from `[run]`."""
 
 
@@ -70,7 +70,7 @@ def run_maker(solver: str) -> Maker:
         "polarities": Key("polarities", bool, True, "whether each record is run in both polarities"),
     }
     call = solver_named(solver)
-    return Maker(call, own | dict(maker_of(call).without(*GIVEN).keys), "How the mechanism is run.")
+    return Maker(call, own | dict(maker_of(call).without(*NOT_IN_FILE).keys), "How the mechanism is run.")
 
 
 def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: object) -> Shaking:

@@ -12,7 +12,7 @@ import numpy as np
 from ..problem.damping.contacts import Contacts
 from ..problem.damping.restitution import Restitution
 from ..quantities import Within
-from .assessment import DESIGN, OF_ALL, report_maker
+from .assessment import DESIGN, FILE_KEYS, report_maker
 from .declarations import (
     USUAL_MAKE,
     Hint,
@@ -62,7 +62,7 @@ class SchemaWriter:
 
     def whole(self) -> Schema:
         """The schema of the file."""
-        once = {name: self.of_key(key) for name, key in OF_ALL.items()}
+        once = {name: self.of_key(key) for name, key in FILE_KEYS.items()}
         self.parts |= {"[report]": self._table(report_maker(), partial=False), "[design]": self._design()}
         once |= {name: {"$ref": f"#/$defs/[{name}]"} for name in ("report", "design")}
         several = {"mechanisms": {"type": "object", "additionalProperties": {"$ref": "#/$defs/own"}}}
@@ -81,13 +81,13 @@ class SchemaWriter:
 
     def _design(self) -> Schema:
         """What `[design]` has: the values are those of the key."""
-        found = self._table(DESIGN, partial=False)
-        found["properties"]["values"] = {
+        schema = self._table(DESIGN, partial=False)
+        schema["properties"]["values"] = {
             "type": "array",
             "minItems": 1,
             "description": "those that are tried, in order",
         }
-        return found | {"required": ["key", "values"]}
+        return schema | {"required": ["key", "values"]}
 
     def _mechanism(self, once: Schema, *, partial: bool) -> Schema:
         """The tables of a mechanism, of which a partial one shares some with others."""
@@ -120,23 +120,23 @@ class SchemaWriter:
         records = self._with(self._kinds(RECORDS, partial=partial, usual="records_in"), scaled)
         for part in records["anyOf"]:
             part["properties"] = {name: _or_several(one) for name, one in part["properties"].items()}
-        found: Schema = {"site": site}
-        found |= {
+        schema: Schema = {"site": site}
+        schema |= {
             name: self._table(maker, partial=partial)
             for name, maker in (("floor", FLOOR), ("check", CHECK), ("limit_curve", CURVE), ("dynamic_check", DYNAMIC))
         }
         for kind in (Restitution, Contacts):
             makers = {name: one.without("wall", "e") for name, one in makers_of(kind).items()}
-            found[kind.__name__.lower()] = self._kinds({kind.__name__: makers}, partial=partial)
-        found["records"] = {"anyOf": [records, {"type": "array", "items": records}]}
-        found["run"] = {"anyOf": [self._table(run_maker(name), partial=partial) for name in SOLVERS]}
-        for one, name in zip(found["run"]["anyOf"], SOLVERS, strict=True):
+            schema[kind.__name__.lower()] = self._kinds({kind.__name__: makers}, partial=partial)
+        schema["records"] = {"anyOf": [records, {"type": "array", "items": records}]}
+        schema["run"] = {"anyOf": [self._table(run_maker(name), partial=partial) for name in SOLVERS]}
+        for one, name in zip(schema["run"]["anyOf"], SOLVERS, strict=True):
             one["properties"]["solver"] = {"const": name} | ({"default": name} if name == SOLVERS[0] else {})
-        return found
+        return schema
 
-    def _with(self, found: Schema, further: Schema) -> Schema:
+    def _with(self, schema: Schema, further: Schema) -> Schema:
         """What a table stands for, with further keys."""
-        parts = [self.parts[one["$ref"].removeprefix("#/$defs/")] for one in found["anyOf"]]
+        parts = [self.parts[one["$ref"].removeprefix("#/$defs/")] for one in schema["anyOf"]]
         return {"anyOf": [part | {"properties": part["properties"] | further} for part in parts]}
 
     def _table(self, maker: Maker, *, partial: bool) -> Schema:
@@ -144,20 +144,20 @@ class SchemaWriter:
         properties = {key_named(key): self.of_key(key, partial) for key in maker.keys.values()}
         properties = {name: one for name, one in properties.items() if one}
         needed, otherwise = ([key_named(key) for key in maker.missing(given)] for given in ((), ("at",)))
-        found: Schema = {"type": "object", "description": maker.doc, "properties": properties}
+        schema: Schema = {"type": "object", "description": maker.doc, "properties": properties}
         if "at" in properties and needed != otherwise and not partial:
-            found |= {"if": {"required": ["at"]}, "else": {"required": needed}}
+            schema |= {"if": {"required": ["at"]}, "else": {"required": needed}}
             needed = otherwise
-        return found | ({"required": needed} if needed and not partial else {}) | {"additionalProperties": False}
+        return schema | ({"required": needed} if needed and not partial else {}) | {"additionalProperties": False}
 
     def _kinds(self, kinds: Mapping[str, Makers], *, partial: bool = False, usual: str = "") -> Schema:
         """The schema of a table whose `kind` and `make` say what it stands for."""
-        found = [
+        schemas = [
             self._part(kind, make, maker, partial, kind != usual and len(kinds) > 1)
             for kind, makers in kinds.items()
             for make, maker in makers.items()
         ]
-        return found[0] if len(found) == 1 else {"anyOf": found}
+        return schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
 
     def _part(self, kind: str, make: str, maker: Maker, partial: bool, named: bool) -> Schema:
         """One class or constructor, as one of the definitions."""
@@ -180,43 +180,43 @@ class SchemaWriter:
 
     def of_key(self, key: Key, partial: bool = False) -> Schema:
         """The schema of a key; empty for one that a file cannot have."""
-        found = self._of_kinds(key.kinds, key.within, partial)
-        if not found:
+        schema = self._of_kinds(key.kinds, key.within, partial)
+        if not schema:
             return {}
         if key.doc:
-            found["description"] = key.doc
+            schema["description"] = key.doc
         if isinstance(key.default, bool | int | float | str) and math.isfinite(
             key.default if isinstance(key.default, int | float) else 0
         ):
-            found["default"] = key.default
-        return found
+            schema["default"] = key.default
+        return schema
 
     def _of_kinds(self, kinds: Iterable[Hint], within: Within | None, partial: bool = False) -> Schema:
         """The schema of a value of one of some types."""
         kinds = tuple(kinds)
-        found: list[Schema] = []
+        schemas: list[Schema] = []
         texts = [choice for kind in kinds for choice in choices_of(kind)]
         if bool in kinds:
-            found.append({"type": "boolean"})
+            schemas.append({"type": "boolean"})
         if any(kind in NUMERIC or typing.get_origin(kind) in NUMERIC for kind in kinds):
-            found.append(_number(kinds, within))
+            schemas.append(_number(kinds, within))
         if any(kind is np.ndarray or typing.get_origin(kind) is np.ndarray for kind in kinds):
-            found.append({"type": "array"})
+            schemas.append({"type": "array"})
         if texts:
-            found.append({"type": "string", "enum": texts})
+            schemas.append({"type": "string", "enum": texts})
         elif str in kinds:
-            found.append({"type": "string"} | ({"x-path": True} if is_path(kinds) else {}))
+            schemas.append({"type": "string"} | ({"x-path": True} if is_path(kinds) else {}))
         for kind in kinds:
             if (items := items_of(kind)) is not None:
-                found.append(self._list(items, within))
+                schemas.append(self._list(items, within))
             elif is_mapping(kind):
-                found.append(
+                schemas.append(
                     {"type": "object", "additionalProperties": self._of_kinds(*parted(get_args(kind)[1], None))}
                 )
         if classes := classes_of(kinds):
-            found.append(self._kinds({name: makers_of(kind) for name, kind in classes.items()}, partial=partial))
-        found = [one for i, one in enumerate(found) if one and one not in found[:i]]
-        return (found[0] if len(found) == 1 else {"anyOf": found}) if found else {}
+            schemas.append(self._kinds({name: makers_of(kind) for name, kind in classes.items()}, partial=partial))
+        schemas = [one for i, one in enumerate(schemas) if one and one not in schemas[:i]]
+        return (schemas[0] if len(schemas) == 1 else {"anyOf": schemas}) if schemas else {}
 
     def _list(self, items: tuple[Hint, ...], within: Within | None) -> Schema:
         """The schema of a list."""
@@ -245,12 +245,12 @@ def one_of_form(one: Schema) -> Schema:
 def _number(kinds: tuple[Hint, ...], within: Within | None) -> Schema:
     """The schema of a number, or of a text with a unit."""
     whole = within.whole if within else int in kinds and float not in kinds
-    found: Schema = {"type": "integer"} if whole else {"type": ["number", "string"]}
+    schema: Schema = {"type": "integer"} if whole else {"type": ["number", "string"]}
     if within is not None:
-        found |= {"minimum": _short(within.low)} if math.isfinite(within.low) else {}
-        found |= {"maximum": _short(within.high)} if math.isfinite(within.high) and not within.infinite else {}
-        found |= {"unit": "" if within.whole else within.unit}
-    return found
+        schema |= {"minimum": _short(within.low)} if math.isfinite(within.low) else {}
+        schema |= {"maximum": _short(within.high)} if math.isfinite(within.high) and not within.infinite else {}
+        schema |= {"unit": "" if within.whole else within.unit}
+    return schema
 
 
 def _short(end: float) -> float:

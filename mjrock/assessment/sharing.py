@@ -11,10 +11,14 @@ Schema = dict[str, Any]
 """A schema, or a part of one."""
 Part = Mapping[str, Any]
 """A part of a schema that is read alone."""
-ONE, NAMED, SEVERAL = ("items", "additionalProperties", "then", "else"), ("properties", "$defs"), ("anyOf", "oneOf")
+SINGLE_PART, PARTS_BY_NAME, LISTED_PARTS = (
+    ("items", "additionalProperties", "then", "else"),
+    ("properties", "$defs"),
+    ("anyOf", "oneOf"),
+)
 """Keywords whose value is a part of a schema, parts by names, and a list of parts."""
-SHORT = 60
-"""Letters up to which a part stands in its place: it is hardly longer than a reference."""
+LONGEST_REPEATED = 60
+"""Most letters of a part that is repeated where it occurs: it is hardly longer than a reference to it."""
 
 
 def shared(whole: Schema) -> Schema:
@@ -30,7 +34,7 @@ def shared(whole: Schema) -> Schema:
 
     def written(node: object) -> object:
         text = _text(node)
-        if counts[text] == 1 or len(text) <= SHORT:
+        if counts[text] == 1 or len(text) <= LONGEST_REPEATED:
             return _over_parts(node, written)
         if text not in names:
             names[text] = f"part_{len(names) + 1}"
@@ -63,11 +67,11 @@ def _over_parts(node: object, call: Callable[[object], object]) -> Any:
         return node
     made = dict(node)
     for key, value in node.items():
-        if key in NAMED:
+        if key in PARTS_BY_NAME:
             made[key] = {name: call(one) for name, one in value.items()}
-        elif key in SEVERAL:
+        elif key in LISTED_PARTS:
             made[key] = [call(one) for one in value]
-        elif key in ONE:
+        elif key in SINGLE_PART:
             made[key] = call(value)
     return made
 

@@ -18,13 +18,13 @@ Document = Mapping[str, Any]
 """Tables of a file as plain dictionaries and lists, or the input of the form."""
 Place = tuple[str | int, ...]
 """A key by the tables that it is in: ("effects", 0, "height")."""
-LARGEST = 1_000_000
+MOST_CHARACTERS = 1_000_000
 """Most characters of a file."""
 MOST_LEVELS = 50
 """Most tables and lists within each other."""
 COMMA = re.compile(r"[^#\"'\[{]*=\s*[+-]?\d+,\d")
 """A line with a number that is written with a decimal comma."""
-AT = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
+ERROR_PLACE = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
 """What `tomllib` says of the place of an error."""
 
 CLOSINGS = "", "]", "]]", "]]]", '"""', "'''", '"""]', "''']"
@@ -134,8 +134,8 @@ def parsed(text: str) -> dict[str, Any]:
     Raises:
         AssessmentError: with the line, for a text that is not TOML, is too long, or is nested too deeply.
     """
-    if len(text) > LARGEST:
-        long = Message("has {count} characters; the valid range is 0 to {most}", count=len(text), most=LARGEST)
+    if len(text) > MOST_CHARACTERS:
+        long = Message("has {count} characters; the valid range is 0 to {most}", count=len(text), most=MOST_CHARACTERS)
         raise AssessmentError((Fault((), long),))
     try:
         found = tomllib.loads(text)
@@ -143,9 +143,9 @@ def parsed(text: str) -> dict[str, Any]:
             return found
         raise RecursionError
     except tomllib.TOMLDecodeError as error:
-        place = AT.search(str(error))
+        place = ERROR_PLACE.search(str(error))
         line = int(place[1]) if place and place[1] else text.count("\n") + 1
-        cause = AT.sub("", str(error))
+        cause = ERROR_PLACE.sub("", str(error))
         if COMMA.match(text.split("\n")[line - 1]):
             cause = Message("a number has a comma; the decimal mark is a point, as in 0.5")
         raise AssessmentError((Fault((), Message("is not TOML: {cause}", cause=cause), line),)) from None

@@ -14,13 +14,13 @@ from .schema import whole_schema
 from .sharing import Part
 from .tables import Document
 
-FILE = Path(__file__).with_name("templates.toml")
+TEMPLATE_FILE = Path(__file__).with_name("templates.toml")
 """The values of all templates."""
-WIDE = 100
+TEMPLATE_WIDTH = 100
 """Columns of a template."""
 SENTENCE = re.compile(r"(?<=\.)\s+(?=[A-Z`])")
 """Between two sentences."""
-HEAD = """\
+TEMPLATE_HEAD = """\
 Numbers are in SI units, or texts with a unit, such as "30 cm", "60 kN", "0.2 g" and "12 deg".
 A key after # may be left out, and has the value that is shown, if one is; take the # away to give
 it another one. None in a comment stands for a key that is left out.
@@ -30,7 +30,7 @@ it another one. None in a comment stands for a key that is left out.
 
 def seeds() -> dict[str, dict[str, Any]]:
     """The values of each template by its name, with what they share, and its `title`."""
-    found = tomllib.loads(FILE.read_text(encoding="utf-8"))
+    found = tomllib.loads(TEMPLATE_FILE.read_text(encoding="utf-8"))
     shared = found.pop("shared")
     return {name: merged(shared, own) for name, own in found.items()}
 
@@ -139,7 +139,7 @@ def explained(line: str, key: Part) -> Iterator[str]:
     if low is not None and high is not None and " to " not in text:
         text = f"{text} {low:g} to {high:g} {unit}".strip()
     beside = f"{line:<32}  # {text}" if text else line
-    if len(beside) <= WIDE:
+    if len(beside) <= TEMPLATE_WIDTH:
         yield beside
     else:
         yield from (*comment(text), line)
@@ -147,7 +147,7 @@ def explained(line: str, key: Part) -> Iterator[str]:
 
 def comment(text: str) -> list[str]:
     """A text as comments."""
-    return textwrap.wrap(" ".join(text.split()), WIDE, initial_indent="# ", subsequent_indent="# ")
+    return textwrap.wrap(" ".join(text.split()), TEMPLATE_WIDTH, initial_indent="# ", subsequent_indent="# ")
 
 
 def template(name: str) -> str:
@@ -163,6 +163,6 @@ def templates() -> dict[str, str]:
 
 def written(values: dict[str, Any], schema: Part) -> str:
     """Values as the text of a template."""
-    head = [*comment(values.pop("title")), "#", *(f"# {line}" for line in HEAD.splitlines()), ""]
+    head = [*comment(values.pop("title")), "#", *(f"# {line}" for line in TEMPLATE_HEAD.splitlines()), ""]
     root = schema["then" if "mechanisms" in values else "else"]
     return "\n".join([*head, *Writer(schema).table(root, values, "")]) + "\n"

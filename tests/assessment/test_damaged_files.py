@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import mjrock as mr
-from mjrock.assessment.tables import LARGEST
+from mjrock.assessment.tables import MOST_CHARACTERS
 
 WHOLE = (Path(__file__).parent / "files" / "gable.toml").read_text(encoding="utf-8")
 TEXT = WHOLE[: WHOLE.index("# The gable above the eaves")]
@@ -140,7 +140,7 @@ def test_what_is_no_text_is_refused(tmp_path):
         with pytest.raises(TypeError, match="takes a path, or a text"):
             mr.from_toml(**wrong)
     with pytest.raises(ValueError, match="the valid range is 0 to"):
-        mr.from_toml(text=" " * (LARGEST + 1))
+        mr.from_toml(text=" " * (MOST_CHARACTERS + 1))
 
 
 def test_windows_and_editors_write_it_too(tmp_path):

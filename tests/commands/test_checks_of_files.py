@@ -12,7 +12,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.__main__ import main
-from mjrock.assessment.templates import WIDE, seeds, templates
+from mjrock.assessment.templates import TEMPLATE_WIDTH, seeds, templates
 from mjrock.command_line import Status
 
 GARDEN_WALL = """
@@ -65,7 +65,7 @@ def test_a_template_is_checked_as_it_is_and_fits_into_100_columns(name, here, ca
     assert printed(capsys, "new", name, "-o", "wall.toml") == "written: wall.toml\n"
     text = (here / "wall.toml").read_text(encoding="utf-8")
     assert printed(capsys, "new", name) == text
-    assert max(map(len, text.splitlines())) <= WIDE
+    assert max(map(len, text.splitlines())) <= TEMPLATE_WIDTH
     checks = checks_of(text)
     holds = all(verdict.holds for check in checks.values() for verdict in check.verdicts)
     said = printed(capsys, "check", "wall.toml", status=Status.HOLDS if holds else Status.FAILS)
