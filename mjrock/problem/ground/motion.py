@@ -63,21 +63,21 @@ from .records import (
 )
 from .vertices import Vertices
 
-SUSPICIOUS = 3 * GRAVITY
+LARGE_PEAK = 3 * GRAVITY
 """A record with a peak acceleration above this is probably in another unit [m/s2]."""
-FAINT_FILE = 1e-3 * GRAVITY
+SMALL_PEAK = 1e-3 * GRAVITY
 """A file whose peak acceleration is below this is probably in another unit [m/s2]."""
-DRIFT = 0.2
+DRIFT_WARNED_OF = 0.2
 """A record whose residual velocity exceeds this share of its peak velocity probably lacks a baseline correction [-]."""
-IMPULSE = 1e-3
+LONGEST_IMPULSE = 1e-3
 """A piece that is no longer than this is an impulse, whose acceleration says nothing about its unit [s]."""
-UNIT = "peak beyond 3 g"
+PEAK_WARNING = "peak beyond 3 g"
 """What a line of a script is warned of once."""
-NAMING = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
+NAME_FIELDS = ("NETWORK", "STATION_CODE", "STREAM", "EVENT_ID")
 """Fields of a header that name its record."""
 Amplitude = Annotated[float, Within(-1e4, 1e4, "m/s2")]
 """Largest acceleration of a pulse, with its sign."""
-Lasting = Annotated[float, Within(FINEST, 1000, "s")]
+PieceDuration = Annotated[float, Within(FINEST, 1000, "s")]
 Samples = Annotated[ArrayLike, Within(-math.inf, math.inf, "m/s2")] | Array
 Span = Annotated[float, Within(0.01, 100, "s")]
 """Period or duration of a pulse."""
@@ -85,7 +85,7 @@ Cycles = Annotated[float, Within(0.5, 1000)]
 """Number of periods of a pulse."""
 BASELINES = {"constant": 0, "linear": 1, "quadratic": 2}
 """Degree of the polynomial of accelerations that is taken off, by name."""
-ORDER = 4
+FILTER_ORDER = 4
 """Order of the Butterworth filter, which runs forwards and backwards."""
 
 
@@ -126,14 +126,14 @@ class GroundMotion:
         self, accel: Samples, dt: SampleStep, name: str = "ground motion", header: Mapping[str, str] | None = None
     ) -> None:
         self._fill(accel, dt, name, header)
-        self._doubt_of_unit(once=UNIT)
+        self._warn_of_unit(once=PEAK_WARNING)
 
     @classmethod
     def _of_file(cls, accel: ArrayLike, dt: float, name: str, header: Mapping[str, str]) -> GroundMotion:
         """The motion of a file, each of which is warned of, also where one line of a script reads many."""
         motion = cls.__new__(cls)
         motion._fill(accel, dt, name, header)
-        motion._doubt_of_unit()
+        motion._warn_of_unit()
         return motion
 
     @classmethod
@@ -147,7 +147,7 @@ class GroundMotion:
         else:
             motion._fill(vertices.values, min(dt, COARSEST), name, None)
             keep(motion, instants=frozen(vertices.times))
-        motion._doubt_of_unit(once=UNIT)
+        motion._warn_of_unit(once=PEAK_WARNING)
         return motion
 
     def _fill(self, accel: ArrayLike, dt: float, name: str, header: Mapping[str, str] | None) -> None:
@@ -161,12 +161,12 @@ class GroundMotion:
         motion = GroundMotion.__new__(GroundMotion)
         motion._fill(accel, self.dt, name, self.header)
         keep(motion, instants=self.instants)
-        motion._doubt_of_unit(once=UNIT)
+        motion._warn_of_unit(once=PEAK_WARNING)
         return motion
 
-    def _doubt_of_unit(self, once: str = "") -> None:
+    def _warn_of_unit(self, once: str = "") -> None:
         """Warn of a peak beyond 3 g, with `once` a line of a script once."""
-        if self.peak > SUSPICIOUS and (self.instants is None or self.dt > IMPULSE):
+        if self.peak > LARGE_PEAK and (self.instants is None or self.dt > LONGEST_IMPULSE):
             peak = f"{self.peak:g} m/s2 = {self.peak / GRAVITY:.3g} g"
             warn_of(f"{self.name} peaks at {peak}; accelerations are in m/s2", once=once)
 
@@ -541,7 +541,7 @@ class GroundMotion:
         return cls._of_pieces([(duration / steps, amplitude)] * steps, name)
 
     @classmethod
-    def pieces(cls, pieces: Sequence[tuple[Lasting, Amplitude]]) -> Self:
+    def pieces(cls, pieces: Sequence[tuple[PieceDuration, Amplitude]]) -> Self:
         """Constant accelerations one after another, exact where they jump, in every solver.
 
         A step that spans a jump takes its impulse exactly. A short piece is an impulse: (1e-4, 1e4 v) changes the
@@ -810,14 +810,14 @@ class GroundMotion:
 def motion_of(trace: Trace, path: str | PathLike[str]) -> GroundMotion:
     """The motion of a trace, named after its header or its file, with what makes one doubt its unit or baseline."""
     header = trace.header
-    named = [header[field] for field in NAMING if header.get(field)] if header.get("STATION_CODE") else []
+    named = [header[field] for field in NAME_FIELDS if header.get(field)] if header.get("STATION_CODE") else []
     named += [] if named else [Path(path).stem, *(header.values() if list(header) == ["STREAM"] else ())]
     motion = GroundMotion._of_file(trace.accel, trace.dt, name := " ".join(named), header)
     peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
-    if peak < FAINT_FILE:
+    if peak < SMALL_PEAK:
         doubt = "" if "UNITS" in header else "; is its unit right?"
         warn_of(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only{doubt}")
-    if abs(final) > DRIFT * fastest:
+    if abs(final) > DRIFT_WARNED_OF * fastest:
         warn_of(
             f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; it needs a "
             "baseline correction, motion.corrected(baseline='linear')"
@@ -880,9 +880,9 @@ def within_band(accel: Array, dt: float, band: Sequence[float | None]) -> Array:
         low = require_within("lower corner of band", low, 1e-3, 0.49 / dt, "Hz")
     if high is not None:
         high = require_within("upper corner of band", high, max(1e-3, 1.01 * (low or 0.0)), 0.49 / dt, "Hz")
-    pad = math.ceil(1.5 * ORDER / ((low or high) * dt))  # type: ignore[operator]
+    pad = math.ceil(1.5 * FILTER_ORDER / ((low or high) * dt))  # type: ignore[operator]
     require_size("the number of samples with zeros around them", len(accel) + 2 * pad, "raise the lower corner")
     corners, kind = (low or high, "low" if low is None else "high") if None in band else (band, "band")
-    sos = scipy.signal.butter(ORDER, corners, kind, output="sos", fs=1 / dt)
+    sos = scipy.signal.butter(FILTER_ORDER, corners, kind, output="sos", fs=1 / dt)
     filtered = scipy.signal.sosfiltfilt(sos, np.pad(accel, pad), padtype=None)
     return np.asarray(filtered[pad : pad + len(accel)])

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ...quantities import Array, Within, require_reals, require_row, require_within, within_ranges
 from .vertices import Vertices
 
-FINENESS = 20
+STEPS_A_PERIOD = 20
 """Steps to a period at least, between which the peak of a sine is missed by at most 1.2 %."""
 SHORTEST_PERIOD, LONGEST_PERIOD = 0.01, 100.0
 """Bounds of a period [s]."""
@@ -25,7 +25,7 @@ BuildingDamping = Annotated[float, Within(0.005, 0.3)]
 
 def oscillator_steps(dt: float, period: float) -> int:
     """Steps of an oscillator to one of the ground, whose length is dt [s]."""
-    return math.ceil(FINENESS * dt / period)
+    return math.ceil(STEPS_A_PERIOD * dt / period)
 
 
 def relative_displacement(accel: Array, h: float, period: float, damping: float) -> Array:

@@ -57,9 +57,9 @@ DIRECTION_IN_NAME = (
 """Where the name of a file states a direction: between characters that are no letters, as a channel, after a number as
 REXEL has it, as three digits at the end, and as up or down at the end."""
 AZIMUTH_AT_END = re.compile(r"\d{3}(?:\.\w*)?")
-SQUARE = 5.0
+RIGHT_ANGLE_TOLERANCE = 5.0
 """How far two azimuths of a record may be from square to each other [degrees]."""
-IDENTITY = ("NETWORK", "STATION_CODE", "STATION_NAME", "LOCATION", "EVENT_ID", "EVENT_NAME")
+COMMON_FIELDS = ("NETWORK", "STATION_CODE", "STATION_NAME", "LOCATION", "EVENT_ID", "EVENT_NAME")
 """Fields of a header that are the same for all components of a record."""
 
 
@@ -106,12 +106,16 @@ def order(token: str) -> tuple[bool, float, str]:
 
 def of_one_record(tokens: Sequence[str]) -> bool:
     """Whether directions are those of one record: one or two horizontal ones of a kind, and at most one vertical."""
-    level = [token for token in tokens if not is_vertical(token)]
-    if len(set(tokens)) < len(tokens) or not 1 <= len(level) <= 2 or not 2 <= len(tokens) <= len(level) + 1:
+    horizontal = [token for token in tokens if not is_vertical(token)]
+    if len(set(tokens)) < len(tokens) or not 1 <= len(horizontal) <= 2 or not 2 <= len(tokens) <= len(horizontal) + 1:
         return False
-    angles = [angle for token in level if (angle := azimuth(token)) is not None]
-    square = len(angles) == 2 and abs((angles[1] - angles[0]) % 180 - 90) <= SQUARE
-    return len(level) == 1 or square or any({_bare(token) for token in level} == set(family) for family in FAMILIES)
+    angles = [angle for token in horizontal if (angle := azimuth(token)) is not None]
+    square = len(angles) == 2 and abs((angles[1] - angles[0]) % 180 - 90) <= RIGHT_ANGLE_TOLERANCE
+    return (
+        len(horizontal) == 1
+        or square
+        or any({_bare(token) for token in horizontal} == set(family) for family in FAMILIES)
+    )
 
 
 def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
@@ -163,7 +167,7 @@ def _by_names(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
 def _identity(name: str, header: Mapping[str, str]) -> tuple[str, ...]:
     """The fields of a header that are the same for all components of a record, with the number of PEER in its name."""
     number = re.search(r"RSN\d+", name, re.IGNORECASE)
-    return (number[0].upper() if number else "", *(header.get(field, "") for field in IDENTITY))
+    return (number[0].upper() if number else "", *(header.get(field, "") for field in COMMON_FIELDS))
 
 
 def _candidates(name: str, header: Mapping[str, str]) -> Iterator[tuple[str, str]]:
@@ -241,12 +245,12 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
     @property
     def horizontal(self) -> list[GroundMotion]:
         """The horizontal components of all records, at most two of each."""
-        return [motion for components in self.values() for motion in _level(components)[:2]]
+        return [motion for components in self.values() for motion in _horizontal(components)[:2]]
 
     @property
     def first(self) -> list[GroundMotion]:
         """The first horizontal component of each record that has one."""
-        return [level[0] for components in self.values() if (level := _level(components))]
+        return [horizontal[0] for components in self.values() if (horizontal := _horizontal(components))]
 
     def scaled_to(
         self, spectrum: ArrayLike | SpectrumOfCode, periods: Periods, damping: Annotated[float, Within(0, 0.9)] = 0.05
@@ -262,7 +266,7 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
             TypeError, ValueError: for a value outside its range, a motion at rest, or a record with no horizontal
                 component.
         """
-        if alone := [name for name, components in self.items() if not _level(components)]:
+        if alone := [name for name, components in self.items() if not _horizontal(components)]:
             raise ValueError(f"{named(alone)}: no horizontal component; del records[{alone[0]!r}] leaves it out")
         scaled = {name: scaled_together(components, periods, spectrum, damping) for name, components in self.items()}
         return _with_origins(scaled, self)
@@ -393,7 +397,7 @@ def _directed(motion: GroundMotion, token: str) -> GroundMotion:
     return motion.headed({**motion.header, "STREAM": token})
 
 
-def _level(components: Sequence[GroundMotion]) -> list[GroundMotion]:
+def _horizontal(components: Sequence[GroundMotion]) -> list[GroundMotion]:
     """The horizontal ones of the components of a record."""
     return [motion for motion in components if not is_vertical(motion.header.get("STREAM", ""))]
 
@@ -433,8 +437,8 @@ def scaled_together(
         raise TypeError(f"motions = {shown(motions)} is not a sequence of at least one GroundMotion")
     for i, motion in enumerate(motions):
         require_kind(f"motions[{i}]", motion, GroundMotion)
-    if not (level := _level(motions)):
+    if not (horizontal := _horizontal(motions)):
         raise ValueError(f"motions has no horizontal component, but {motions[0].header['STREAM']}")
-    factors = [factor_to_spectrum(motion, periods, target, damping) for motion in level[:2]]
+    factors = [factor_to_spectrum(motion, periods, target, damping) for motion in horizontal[:2]]
     factor = float(np.exp(np.log(factors).mean()))
     return tuple(scaled_by(factor, motion, periods, target) for motion in motions)

@@ -188,10 +188,11 @@ def require_accelerations(head: Mapping[int, str], name: str = "") -> None:
     lines = {place: line[:HEADER_LINE] for place, line in head.items() if not NO_QUANTITY.search(line[:HEADER_LINE])}
     named_so = [(quantities(name), f"the name of the column is {in_message(name)}")]
     named_so += [(quantities(line), f"line {i} is {in_message(line.strip())}") for i, line in reversed(lines.items())]
-    found, where = next(((found[0], where) for found, where in named_so if len(found) == 1), ("accelerations", ""))
-    if found != "accelerations":
+    single = ((names[0], where) for names, where in named_so if len(names) == 1)
+    quantity, where = next(single, ("accelerations", ""))
+    if quantity != "accelerations":
         raise OtherContentError(
-            f"{where}: these are {found}, whatever unit is given; a record of accelerations is needed"
+            f"{where}: these are {quantity}, whatever unit is given; a record of accelerations is needed"
         )
 
 
@@ -493,16 +494,16 @@ def _sheets(path: Path) -> dict[str, list[str]]:
     return {name: ["\t".join(map(_cell, row)).rstrip() for row in rows] for name, rows in tables}
 
 
-def table_traces(path: str | PathLike[str], wanted: TableOptions) -> list[Trace]:
+def table_traces(path: str | PathLike[str], options: TableOptions) -> list[Trace]:
     """The accelerations of a file that is a table, see `parse_table`."""
-    return read(path, lambda file: parse_table(table_lines(file, wanted.sheet), wanted))
+    return read(path, lambda file: parse_table(table_lines(file, options.sheet), options))
 
 
 def _cell(value: object) -> str:
     return "" if value != value else " ".join(str(value).split())
 
 
-def parse_table(lines: list[str], wanted: TableOptions) -> list[Trace]:
+def parse_table(lines: list[str], options: TableOptions) -> list[Trace]:
     """The accelerations of a table, a trace for each of its columns that is wanted, in their order.
 
     Lines ahead of the first number are a header; blank lines and those that begin with #, % or // are skipped.
@@ -511,71 +512,71 @@ def parse_table(lines: list[str], wanted: TableOptions) -> list[Trace]:
         TypeError, ValueError: for an unknown unit, uneven times, a column that is not there, a choice that the caller
             has to make, and where the file contradicts the arguments.
     """
-    scale = TIME_UNITS[require_one_of("time_unit", wanted.time_unit, TIME_UNITS)]
-    if wanted.unit is not None:
-        factor_of(wanted.unit)
-    if wanted.dt is not None:
-        dt = scale * require_within("dt", wanted.dt, FINEST / scale, COARSEST / scale, wanted.time_unit)
-        wanted = wanted._replace(dt=dt)
+    scale = TIME_UNITS[require_one_of("time_unit", options.time_unit, TIME_UNITS)]
+    if options.unit is not None:
+        factor_of(options.unit)
+    if options.dt is not None:
+        dt = scale * require_within("dt", options.dt, FINEST / scale, COARSEST / scale, options.time_unit)
+        options = options._replace(dt=dt)
     if lines[0].lstrip()[:1] in ("{", "["):
         raise OtherContentError("it is JSON; a text of accelerations in columns or rows is needed")
-    found = _table_of(lines, wanted.skip)
-    if len(found.values) < 2:
+    table = _table_of(lines, options.skip)
+    if len(table.values) < 2:
         raise NoRecordError(
-            f"{len(found.values)} rows of numbers in {len(lines)} lines, the first of them {in_message(lines[0])}; at "
+            f"{len(table.values)} rows of numbers in {len(lines)} lines, the first of them {in_message(lines[0])}; at "
             "least 2 rows are needed, of time and acceleration or with dt of accelerations alone"
         )
     try:
-        return _traces_of(found, wanted, scale)
+        return _traces_of(table, options, scale)
     except ValueError as error:
         if not isinstance(error, NoRecordError):
-            require_accelerations(found.head)
+            require_accelerations(table.head)
         raise
 
 
-def _traces_of(found: RecordTable, wanted: TableOptions, scale: float) -> list[Trace]:
-    """The accelerations of a table, with the step of `wanted` in s, and the length of a unit of time [s]."""
-    dt = wanted.dt
-    stated, scaled = found.stated(HEAD_STEP, HEAD_RATE), found.stated(HEAD_SCALE)
+def _traces_of(table: RecordTable, options: TableOptions, scale: float) -> list[Trace]:
+    """The accelerations of a table, with the step of `options` in s, and the length of a unit of time [s]."""
+    dt = options.dt
+    stated, scaled = table.stated(HEAD_STEP, HEAD_RATE), table.stated(HEAD_SCALE)
     if scaled and scaled.value != 1:
         raise ValueError(
             f"line {scaled.place} states a scale of {scaled.value:g}: of the samples, or one that they have already? "
             f"skip= leaves it out, and scaled({scaled.value:g}) applies it"
         )
-    if wanted.skip is None:
-        found, stated = _without_header(found, dt, stated)
-    timed = wanted.columns != ROWS and found.width > 1 and _is_grid(scale * found.column(0), found.decimals, scale)
+    if options.skip is None:
+        table, stated = _without_header(table, dt, stated)
+    timed = options.columns != ROWS and table.width > 1 and _is_grid(scale * table.column(0), table.decimals, scale)
     if stated and not FINEST <= stated.value <= COARSEST:
         stated = None
     if stated:
         _agree("dt, which was given,", dt, stated)
         dt = stated.value if dt is None and not timed else dt
-    in_rows = wanted.columns == ROWS or (wanted.columns is None and dt is not None and not timed and _in_rows(found))
+    in_rows = options.columns == ROWS or (options.columns is None and dt is not None and not timed and _in_rows(table))
     if in_rows:
-        columns, dt = _samples_in_rows(found, dt, scale)
+        columns, dt = _samples_in_rows(table, dt, scale)
     else:
-        columns, dt = _columns_of(found, wanted, dt)
+        columns, dt = _columns_of(table, options, dt)
         _agree("the step of the times", dt, stated)
     for i in columns:
-        require_accelerations(found.head, "" if in_rows else found.name(i))
-    count = found.stated(HEAD_COUNT)
+        require_accelerations(table.head, "" if in_rows else table.name(i))
+    count = table.stated(HEAD_COUNT)
     if count and count.value != (n := len(next(iter(columns.values())))):
         raise ValueError(f"{n} samples; the header states {count.value:g} in line {count.place}; skip= leaves it out")
     return [
-        Trace(_factor(found, wanted.unit, i) * values, dt, {"STREAM": name or f"{i}"} if len(columns) > 1 else {})
-        for (i, values), name in zip(columns.items(), [found.bare(i) for i in columns], strict=True)
+        Trace(_factor(table, options.unit, i) * values, dt, {"STREAM": name or f"{i}"} if len(columns) > 1 else {})
+        for (i, values), name in zip(columns.items(), [table.bare(i) for i in columns], strict=True)
     ]
 
 
-def _samples_in_rows(found: RecordTable, dt: float | None, scale: float) -> tuple[dict[int, Array], float]:
+def _samples_in_rows(table: RecordTable, dt: float | None, scale: float) -> tuple[dict[int, Array], float]:
     """The accelerations of rows as one column, and their time step [s].
 
     Rows of pairs, each a time and its acceleration, have a step of their own.
     """
-    values = np.array([x for row in found.values for x in row])
-    if _has_pairs(values, found.decimals, scale):
+    values = np.array([x for row in table.values for x in row])
+    if _has_pairs(values, table.decimals, scale):
         step_of_pairs = float(f"{_grid(scale * values[::2])[0]:.12g}")
-        _agree("dt, which was given,", dt, HeaderNumber(step_of_pairs, found.places[0]))
+        _agree("dt, which was given,", dt, HeaderNumber(step_of_pairs, table.places[0]))
         return {0: values[1::2]}, step_of_pairs
     if dt is None:
         raise NoRecordError("samples in rows need their time step: give dt")
@@ -658,7 +659,7 @@ def _names(head: Sequence[str], rows: Sequence[Sequence[float]]) -> list[str]:
 
 
 def _without_header(
-    found: RecordTable, dt: float | None, stated: HeaderNumber | None
+    table: RecordTable, dt: float | None, stated: HeaderNumber | None
 ) -> tuple[RecordTable, HeaderNumber | None]:
     """The table without rows that are numbers of a header, and the step that they state.
 
@@ -669,85 +670,85 @@ def _without_header(
             others.
     """
     for rows in range(1, MOST_HEADER_NUMBERS):
-        lead, rest = [x for row in found.values[:rows] for x in row], found.values[rows:]
+        lead, rest = [x for row in table.values[:rows] for x in row], table.values[rows:]
         if len(lead) > MOST_HEADER_NUMBERS or len(rest) < 10:
             break
-        counts = {float(len(rest))} | ({float(sum(map(len, rest)))} if found.width > 2 else set())
+        counts = {float(len(rest))} | ({float(sum(map(len, rest)))} if table.width > 2 else set())
         if set(lead) & counts:
             steps = [x for x in lead if FINEST <= x < COARSEST]
-            return found.without(rows), HeaderNumber(steps[0], found.places[0]) if len(steps) == 1 else stated
-    first, *others = found.values
+            return table.without(rows), HeaderNumber(steps[0], table.places[0]) if len(steps) == 1 else stated
+    first, *others = table.values
     doubted = 0
     if len(others) >= 3:
-        wide = found.width > 1
+        wide = table.width > 1
         follows = others[0] == [dt] and first[0] != 0 and first[0] == int(first[0])
         alone = len(others) >= 10 and abs(first[0]) > max(
             max(abs(row[0]) for row in others), HEADER_RATIO * max(abs(row[0]) for row in others[:NUMBERS_COMPARED])
         )
-        grid = wide and len(first) == found.width and _is_grid(found.without(1).column(0), found.decimals, 1.0)
-        early = grid and not _is_grid(found.column(0), found.decimals, 1.0)
+        grid = wide and len(first) == table.width and _is_grid(table.without(1).column(0), table.decimals, 1.0)
+        early = grid and not _is_grid(table.column(0), table.decimals, 1.0)
         if len(first) == 1 and not wide and dt is not None:
             doubted = 2 if follows else int(first == [dt] or alone)
-        elif len(first) != found.width or early:
+        elif len(first) != table.width or early:
             doubted = 1
     if doubted:
-        where, given = found.places[0], "" if dt is None else f" (dt = {dt:g} s was given)"
+        where, given = table.places[0], "" if dt is None else f" (dt = {dt:g} s was given)"
         raise ValueError(
-            f"{' and '.join(found.row_text(i) for i in range(doubted))}{given}: of the header, or the first row? "
-            f"skip={found.places[doubted] - 1} reads what follows, skip={where - 1} takes it as a row"
+            f"{' and '.join(table.row_text(i) for i in range(doubted))}{given}: of the header, or the first row? "
+            f"skip={table.places[doubted] - 1} reads what follows, skip={where - 1} takes it as a row"
         )
-    return found, stated
+    return table, stated
 
 
-def _columns_of(found: RecordTable, wanted: TableOptions, dt: float | None) -> tuple[dict[int, Array], float]:
+def _columns_of(table: RecordTable, options: TableOptions, dt: float | None) -> tuple[dict[int, Array], float]:
     """The accelerations by the number of their column, in the unit of the file, and their time step [s]."""
-    if wanted.columns is not None:
-        given = [wanted.columns] if isinstance(wanted.columns, int | str) else list(wanted.columns)
-        if len(given) > found.width == 1:
+    if options.columns is not None:
+        given = [options.columns] if isinstance(options.columns, int | str) else list(options.columns)
+        if len(given) > table.width == 1:
             step = "" if dt else " and give its time step dt"
-            chosen = f"columns = {in_message(str(wanted.columns))}"
-            raise ValueError(f"line {found.places[0]} has one column, and {chosen} takes several; leave it out{step}")
-        picked = [_number_of(found, column) for column in given]
+            chosen = f"columns = {in_message(str(options.columns))}"
+            raise ValueError(f"line {table.places[0]} has one column, and {chosen} takes several; leave it out{step}")
+        picked = [_number_of(table, column) for column in given]
     else:
-        picked = list(range(found.width))
-    for place, row in zip(found.places, found.values, strict=True):
-        if len(row) != found.width:
-            rows = "; samples in rows are read with dt" if dt is None and place == found.places[-1] else ""
-            raise ValueError(f"line {place} has {len(row)} columns; the others have {found.width}{rows}")
-    scale = TIME_UNITS[wanted.time_unit]
-    if found.width > 2 and found.width % 2 == 0 and _has_pairs(np.concatenate(found.values), found.decimals, scale):
+        picked = list(range(table.width))
+    for place, row in zip(table.places, table.values, strict=True):
+        if len(row) != table.width:
+            rows = "; samples in rows are read with dt" if dt is None and place == table.places[-1] else ""
+            raise ValueError(f"line {place} has {len(row)} columns; the others have {table.width}{rows}")
+    scale = TIME_UNITS[options.time_unit]
+    if table.width > 2 and table.width % 2 == 0 and _has_pairs(np.concatenate(table.values), table.decimals, scale):
         raise ValueError(
-            f"line {found.places[0]} begins rows of {found.width // 2} pairs of a time and an acceleration: "
+            f"line {table.places[0]} begins rows of {table.width // 2} pairs of a time and an acceleration: "
             "columns='rows' reads them"
         )
-    time = scale * found.column(picked[0])
-    grid = _is_grid(time, found.decimals, scale)
+    time = scale * table.column(picked[0])
+    grid = _is_grid(time, table.decimals, scale)
     timed = len(picked) > 1 and (dt is None or grid)
-    if wanted.columns is None and (len(picked) > 2 or (len(picked) == 2 and not timed)):
+    if options.columns is None and (len(picked) > 2 or (len(picked) == 2 and not timed)):
         rows = "" if grid else f", or {'' if dt else 'dt= and '}columns='rows' for samples in rows"
-        raise NoRecordError(f"line {found.places[0]} has {found.choice(timed)}{rows}")
+        raise NoRecordError(f"line {table.places[0]} has {table.choice(timed)}{rows}")
     if not timed:
         if dt is None:
-            raise NoRecordError(f"line {found.places[0]} has one column of accelerations; give its time step dt")
-        return {i: found.column(i) for i in picked}, dt
+            raise NoRecordError(f"line {table.places[0]} has one column of accelerations; give its time step dt")
+        return {i: table.column(i) for i in picked}, dt
     if len(picked) < 2:
         raise ValueError("a column of accelerations is needed beside the one of times")
-    return {i: found.column(i) for i in picked[1:]}, _step_of(time, found, scale, dt)
+    return {i: table.column(i) for i in picked[1:]}, _step_of(time, table, scale, dt)
 
 
-def _number_of(found: RecordTable, column: object) -> int:
+def _number_of(table: RecordTable, column: object) -> int:
     """The number of a column that is given by it or by its name, with or without what stands there in brackets."""
     if not isinstance(column, str):
-        return require_whole("a number in columns", column, 0, found.width - 1)
-    for names in (found.names, [found.bare(i) for i in range(len(found.names))]):
+        return require_whole("a number in columns", column, 0, table.width - 1)
+    for names in (table.names, [table.bare(i) for i in range(len(table.names))]):
         fit = [i for i, name in enumerate(names) if name.casefold() == column.strip().casefold()]
         if len(fit) == 1:
             return fit[0]
-    if not found.names:
+    if not table.names:
         raise ValueError(
-            f"columns has {in_message(column)}; the file has no names; give numbers, 0 to {found.width - 1}"
+            f"columns has {in_message(column)}; the file has no names; give numbers, 0 to {table.width - 1}"
         )
-    valid = ", ".join(map(in_message, found.names))
+    valid = ", ".join(map(in_message, table.names))
     raise ValueError(f"columns has {in_message(column)}; the names are {valid}")
 
 
@@ -769,9 +770,9 @@ def _is_grid(time: Array, decimals: int, scale: float) -> bool:
     return len(time) > 2 and bool((np.diff(time) > 0).all()) and _is_even(time, decimals, scale)
 
 
-def _step_of(time: Array, found: RecordTable, scale: float, given: float | None) -> float:
+def _step_of(time: Array, table: RecordTable, scale: float, given: float | None) -> float:
     """The step of a column of times [s], or the given one, against which the column is held."""
-    steps, places = np.diff(time), found.places
+    steps, places = np.diff(time), table.places
     back = np.flatnonzero(steps <= 0)
     if back.size:
         i = back[0]
@@ -782,15 +783,15 @@ def _step_of(time: Array, found: RecordTable, scale: float, given: float | None)
             )
         raise ValueError(f"line {places[i + 1]}: time does not increase, {time[i]:g} s to {time[i + 1]:g} s")
     dt = float(f"{_grid(time)[0]:.12g}")  # so that two components have one step
-    if not _is_even(time, found.decimals, scale):
+    if not _is_even(time, table.decimals, scale):
         usual = float(np.median(steps))
         i = int(np.abs(steps - usual).argmax())
         raise ValueError(
             f"line {places[i + 1]}: uneven time steps, {steps[i]:g} s from {time[i]:g} s on where {usual:g} s is usual"
         )
     if given is not None:
-        numbered = found.decimals == 0 and math.isclose(dt, scale)
-        if abs(given - dt) > max(UNEVEN_TIME * given, 10.0**-found.decimals * scale / len(steps)) and not numbered:
+        numbered = table.decimals == 0 and math.isclose(dt, scale)
+        if abs(given - dt) > max(UNEVEN_TIME * given, 10.0**-table.decimals * scale / len(steps)) and not numbered:
             raise ValueError(f"dt = {given:g} s was given, and the times from line {places[0]} on step by {dt:g} s")
         return given
     if SLOW_SAMPLING <= dt <= COARSEST:
@@ -809,35 +810,35 @@ def _agree(name: str, given: float | None, stated: HeaderNumber | None) -> None:
         )
 
 
-def _in_rows(found: RecordTable) -> bool:
+def _in_rows(table: RecordTable) -> bool:
     """Whether samples stand in rows.
 
     They do where the last row is shorter. They also do where at least four jump less along the rows than down the
     columns, and from the end of a row to the next not much more than within it.
     """
-    *full, last = found.values
-    if found.width < 3 or any(len(row) != found.width for row in full) or len(last) > found.width:
+    *full, last = table.values
+    if table.width < 3 or any(len(row) != table.width for row in full) or len(last) > table.width:
         return False
-    if len(last) < found.width:
+    if len(last) < table.width:
         return True
-    values = np.array(found.values)
+    values = np.array(table.values)
     down, within = (float(np.abs(np.diff(values, axis=axis)).mean()) for axis in (0, 1))
     on = float(np.abs(values[1:, 0] - values[:-1, -1]).mean())
-    return found.width > 3 and within < SMOOTH_ROWS * down and on < 2 * within
+    return table.width > 3 and within < SMOOTH_ROWS * down and on < 2 * within
 
 
-def _factor(found: RecordTable, unit: str | float | None, column: int) -> float:
+def _factor(table: RecordTable, unit: str | float | None, column: int) -> float:
     """The unit of a column [m/s2], held against that of its name, or against the only one that the header names."""
-    name = found.name(column)
+    name = table.name(column)
     of_name = stated_units(name)
-    of_head = {unit: place for place, line in found.head.items() for unit in stated_units(line[:HEADER_LINE])}
+    of_head = {unit: place for place, line in table.head.items() for unit in stated_units(line[:HEADER_LINE])}
     stated = of_name or list(of_head)
     if unit is None:
         if len(stated) != 1:
             names = " and ".join(stated) or "no unit"
             raise NoRecordError(f"the header names {names}; give unit=, one of {', '.join(ACCELERATION_UNITS)}")
         return ACCELERATION_UNITS[stated[0]]
-    if isinstance(unit, str) and found.head and len(stated) == 1 and stated != [unit]:
+    if isinstance(unit, str) and table.head and len(stated) == 1 and stated != [unit]:
         where = f"the name {in_message(name)} of the column" if of_name else f"line {of_head[stated[0]]}"
         raise ValueError(f"unit = {unit!r} was given, and {where} says {stated[0]}; skip= leaves it out")
     return factor_of(unit)

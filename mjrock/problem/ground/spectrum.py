@@ -111,11 +111,11 @@ GROUNDS_EC8 = {
         "E": GroundEC8(1.60, 0.05, 0.25, 1.2, math.inf),
     },
 }
-FIRM = 10.0
+LONGEST_SPECTRAL = 10.0
 """T_F, beyond which the displacement is that of the ground [s]."""
 PLATEAU_FROM, PLATEAU_TO = 0.8, 1.1
 """a and b, the periods between which a mode amplifies most, over its own [-], Circolare 2019 n. 7, C7.2.3."""
-FINER = 200
+STEPS_BY_PIECES = 200
 """Steps to a period on ground that moves by pieces, between which the peak of a sine is missed by at most 1e-4."""
 PeakOnRock = Annotated[float, Within(0.05, 10, "m/s2")]
 PeriodOnRock = Annotated[float | None, Within(0.05, 1, "s")]
@@ -183,7 +183,7 @@ class CodeSpectrum:
         short = np.minimum(periods, self.TE)
         below = self(short, damping) * (short / (2 * math.pi)) ** 2
         ground = 0.025 * self.ag * self.S * self.TC * self.TD
-        share = np.clip((periods - self.TE) / (FIRM - self.TE), 0.0, 1.0) if math.isfinite(self.TE) else 0.0
+        share = np.clip((periods - self.TE) / (LONGEST_SPECTRAL - self.TE), 0.0, 1.0) if math.isfinite(self.TE) else 0.0
         largest = ground * (self.amplification * eta + (1 - self.amplification * eta) * share)
         return np.where(periods > self.TE, largest, below)
 
@@ -497,7 +497,7 @@ def _largest(motion: GroundMotion, period: float, damping: float) -> float:
     """The largest displacement of an oscillator relative to the ground [m]."""
     if motion.instants is not None:
         until = motion.duration + period
-        at = np.linspace(0.0, until, math.ceil(FINER * until / period) + 1)
+        at = np.linspace(0.0, until, math.ceil(STEPS_BY_PIECES * until / period) + 1)
         return float(np.abs(of_pieces(motion.vertices, at, period, damping).displacement).max())
     parts = oscillator_steps(motion.dt, period)
     h = motion.dt / parts

@@ -13,9 +13,9 @@ from ...problem.ground.spectrum import SpectrumOfCode, response_spectrum
 from ...quantities import require_real, require_within, shown, takes
 from .code import USUAL_CODE, Code, code_of
 
-PERIODS = 60
+PERIODS_OF_RECORD = 60
 """Number of periods up to the equivalent period at which the spectrum of a record is computed."""
-SHORT = 0.05
+SHORTEST_OF_RECORD = 0.05
 """Shortest period at which the spectrum of a record is computed where T_0 is not known [s]."""
 Demand = GroundMotion | SpectrumOfCode | Callable[[float, float], float]
 """A record, the spectrum of a code on the ground or on a floor, or an elastic displacement spectrum S_De(T, xi) [m]."""
@@ -57,8 +57,10 @@ def starting_acceleration(demand: Demand, T_0: float | None, code: Code) -> floa
 def demanded_displacement(demand: Demand, period: float, damping: float, T_0: float | None) -> float:
     """The spectral displacement of a demand at a period [m]; of a record the largest one from T_0 up to the period."""
     if isinstance(demand, GroundMotion):
-        shortest = SHORT if T_0 is None else T_0
-        periods = np.geomspace(max(min(shortest, period), SHORTEST_PERIOD), max(period, SHORTEST_PERIOD), PERIODS)
+        shortest = SHORTEST_OF_RECORD if T_0 is None else T_0
+        periods = np.geomspace(
+            max(min(shortest, period), SHORTEST_PERIOD), max(period, SHORTEST_PERIOD), PERIODS_OF_RECORD
+        )
         return float(response_spectrum(demand, periods, damping).Sd.max())
     if isinstance(demand, SpectrumOfCode):
         return float(demand.displacement(period, damping))

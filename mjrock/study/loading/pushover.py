@@ -23,9 +23,9 @@ from ...scene.potential import Potential
 from ...scene.scene import Scene
 from ...scene.wall import wall_scene
 
-ITERATIONS = 100
+MOST_NEWTON_STEPS = 100
 """Most iterations of Newton's method for the vertical equilibrium of one pose."""
-MARGIN = 1.1
+CURVE_MARGIN = 1.1
 """How far a curve is followed, as a multiple of the rotation at which that of the rigid wall falls to zero [-]. The
 softest base that carries a wall moves that rotation by some hundredths."""
 
@@ -104,7 +104,7 @@ def _carried(scene: Scene, potential: Potential, pose: Array) -> tuple[Array, Ar
     contacts, weight = len(scene.contacts.k), GRAVITY * float(scene.bodies.mass[0])
     limits = np.append(np.full(contacts, np.inf), scene.ties.stretch)
     down = float(potential.load(pose)[1])
-    for _ in range(ITERATIONS):
+    for _ in range(MOST_NEWTON_STEPS):
         rates, pressed = potential.rates(pose).toarray(), np.minimum(potential.pressed(pose), limits)
         springs = rates.T @ (potential.springs * pressed)
         stiffness = float(scene.contacts.k[pressed[:contacts] > 0] @ rates[:contacts, 1][pressed[:contacts] > 0] ** 2)
@@ -219,9 +219,9 @@ def pushover(
         moment = held.force * held.height
         start = float(multiplier[held.lifted.argmax()]) if held.lifted.any() else math.nan
     end = falls_to_zero(path, multiplier, math.inf)
-    wanted = np.isin(path, requested) if rotations is not None else path < end
+    selected = np.isin(path, requested) if rotations is not None else path < end
     peak = float(multiplier[path < end].max())
-    path, multiplier, moment = path[wanted], multiplier[wanted], moment[wanted]
+    path, multiplier, moment = path[selected], multiplier[selected], moment[selected]
     if rotations is None and end < math.inf:
         path, multiplier, moment = np.append(path, end), np.append(multiplier, 0.0), np.append(moment, 0.0)
     return PushoverCurve(case, contacts, path, multiplier, moment, start, end, peak)
@@ -240,7 +240,7 @@ def _rigid(case: Case, phi: Array) -> tuple[Array, Array]:
 def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
     """Rotations from rest to beyond overturning [rad], denser about the uplift and where a tie changes."""
     fine = np.linspace(0.0, ON_ITS_FACE, 20_001)
-    limit = min(MARGIN * falls_to_zero(fine, _rigid(case, fine)[0], math.inf), ON_ITS_FACE)
+    limit = min(CURVE_MARGIN * falls_to_zero(fine, _rigid(case, fine)[0], math.inf), ON_ITS_FACE)
     parts = [np.linspace(rest, limit, points if not uplift else points // 2)]
     if uplift:
         near = min(max(uplift, 1e-9), limit)
