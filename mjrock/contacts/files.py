@@ -156,10 +156,10 @@ def written(rows: Iterable[Sequence[object]]) -> str:
 
 def aligned(rows: Sequence[Sequence[str]], sides: str = ">") -> list[str]:
     """Rows of cells as lines whose columns end below each other, or begin so where their side is "<"; the last side is
-    that of all further columns."""
+    that of all further columns. No line ends in blanks."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     formats = [f"{side}{width}" for side, width in zip(sides.ljust(len(widths), sides[-1]), widths, strict=True)]
-    return ["  ".join(f"{cell:{each}}" for cell, each in zip(row, formats, strict=True)) for row in rows]
+    return ["  ".join(f"{cell:{each}}" for cell, each in zip(row, formats, strict=True)).rstrip() for row in rows]
 
 
 def _cell(value: object) -> object:

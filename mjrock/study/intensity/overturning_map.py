@@ -66,7 +66,7 @@ class OverturningMap(NotebookPicture):
 
     def table(self) -> str:
         """A line for each period: from which amplitude it overturns, and in which ranges it stands above, as text."""
-        return "\n".join(line.rstrip() for line in aligned(self._rows(), ">>><"))
+        return "\n".join(aligned(self._rows(), ">>><"))
 
     def _rows(self) -> list[tuple[str, ...]]:
         heads = "period [s]", "falls from [m/s2]", "without impact from [m/s2]", "stands again at [m/s2]"

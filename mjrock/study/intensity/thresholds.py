@@ -85,7 +85,7 @@ class Thresholds(NotebookPicture):
 
     def table(self) -> str:
         """A line for each range: its edges, and in which range nudged motions have them, as text."""
-        return "\n".join(line.rstrip() for line in aligned(self._rows(), "<>>>>>"))
+        return "\n".join(aligned(self._rows(), "<>>>>>"))
 
     def _rows(self) -> list[tuple[str, ...]]:
         rows: list[tuple[str, ...]] = [("record", "falls from", "nudged", "to", "nudged", "seen in repeats")]

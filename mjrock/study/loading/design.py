@@ -145,7 +145,7 @@ class Design(NotebookPicture):
             else:
                 last = trial.governs.label, trial.governs.verdict.clause
                 rows.append((trial.label, ratio_text(trial.ratio), _word(trial), *last))
-        return "\n".join(line.rstrip() for line in [*aligned(rows, "<><<<"), self.sentence])
+        return "\n".join([*aligned(rows, "<><<<"), self.sentence])
 
     @property
     def sentence(self) -> str:

@@ -218,7 +218,7 @@ class MechanismCheck:
 
     def table(self) -> str:
         """The steps with their clauses, as text. Capacity over demand is followed by HOLDS or FAILS."""
-        return "\n".join(line.rstrip() for line in aligned(self._rows(), "<><"))
+        return "\n".join(aligned(self._rows(), "<><"))
 
     def _repr_html_(self) -> str:
         return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), self._rows())

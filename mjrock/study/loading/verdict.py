@@ -79,4 +79,4 @@ def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
 
 def verdicts_of(verdicts: Sequence[Verdict]) -> str:
     """Conditions as a table in text, see `verdict_rows`."""
-    return "\n".join(line.rstrip() for line in aligned(verdict_rows(verdicts), "<"))
+    return "\n".join(aligned(verdict_rows(verdicts), "<"))
