@@ -60,7 +60,7 @@ def table_of(value: Any, kinds: Sequence[Hint], place: Place) -> Tables:
     )
 
 
-def values_of(values: Mapping[str, Any], keys: Mapping[str, Key], place: Place) -> Tables:
+def values_of(values: Mapping[str, object], keys: Mapping[str, Key], place: Place) -> Tables:
     """Arguments by name as the keys of a table. None is left out."""
     table: Tables = {}
     for name, value in values.items():
@@ -72,7 +72,7 @@ def values_of(values: Mapping[str, Any], keys: Mapping[str, Key], place: Place) 
     return table
 
 
-def plain(value: object, kinds: Sequence[Hint], place: Place) -> Any:
+def plain(value: object, kinds: Sequence[Hint], place: Place) -> object:
     """A value as a file has it: a number, a text, a truth, a list or a table.
 
     Raises:

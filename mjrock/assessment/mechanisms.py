@@ -21,7 +21,7 @@ from ..study.loading.dynamic_check import DynamicCheck, dynamic_check
 from ..study.loading.limit_analysis import LimitCurve, limit_curve
 from ..study.loading.mechanism_check import MechanismCheck, mechanism_check
 from ..study.loading.mechanism_curve import Checked, case_of
-from .declarations import Makers, key_named, maker_of, makers_of
+from .declarations import Maker, Makers, key_named, maker_of, makers_of
 from .reading import OWN_KEYS, Reader, RefusedError, caused
 from .running import Shaking, shaking_of
 from .tables import Place, Table
@@ -201,7 +201,7 @@ def _mechanism(reader: Reader, table: Table, own: set[str], used: set[str]) -> M
     return Mechanism(problem, demand, options, curve, shaking or Shaking(), table.place)
 
 
-def _options(reader: Reader, table: Table, name: str, maker: Any) -> dict[str, Any]:
+def _options(reader: Reader, table: Table, name: str, maker: Maker) -> dict[str, Any]:
     """The arguments that a table in another has, those of a function; none where something is wrong with them."""
     if name not in table.values:
         return {}

@@ -49,7 +49,7 @@ class Shaking:
     records: tuple[GroundMotion, ...] = ()
     solver: str = "analytical"
     polarities: bool = True
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: Mapping[str, object] = field(default_factory=dict)
     e: Restitution | None = None
     contacts: Contacts | None = None
     dynamic: Mapping[str, Any] = field(default_factory=dict)
@@ -116,7 +116,7 @@ def usual_solver(wall: Block | None) -> str:
     return "explicit" if wall is None else "analytical"
 
 
-def _run(reader: Reader, table: Table, wall: Block | None) -> dict[str, Any]:
+def _run(reader: Reader, table: Table, wall: Block | None) -> dict[str, object]:
     """The solver and its options."""
     solver = reader.named(table, "solver", SOLVERS, usual_solver(wall))
     options = reader.arguments(table, run_maker(solver))

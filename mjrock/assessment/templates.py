@@ -35,7 +35,7 @@ def seeds() -> dict[str, dict[str, Any]]:
     return {name: merged(shared, own) for name, own in found.items()}
 
 
-def merged(shared: Document, own: Document) -> dict[str, Any]:
+def merged(shared: Document, own: Document) -> dict[str, object]:
     """Tables with what they share, table by table."""
     made = dict(own)
     for name, value in shared.items():
