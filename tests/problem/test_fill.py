@@ -25,6 +25,22 @@ def test_the_weight_is_that_of_the_earth_up_to_the_ground():
     )
 
 
+@pytest.mark.parametrize("at", [0.5, 1.2, 1.5, 1.8])
+def test_faces_beside_a_gap_bear_the_whole_load(at):
+    """Two blocks 1 m apart, 1 m below the ground, under a load that spreads over the gap between them."""
+    blocks = [box(0, 1, 0, 2, name="left"), box(2, 3, 0, 2, name="right")]
+    masonry = mr.Masonry([box(-2, 5, -1, 0, name="ground", fixed=True), *blocks])
+    borne = {load.block: load.force for load in mr.Fill(top=3.0, spread=0.8).under(masonry, 50e3, at)}
+    assert sum(borne.values()) == pytest.approx(50e3)
+    low, high = max(at - 0.8, 0.0), min(at + 0.8, 3.0)
+    widths = {"left": max(min(high, 1.0) - low, 0.0), "right": max(high - max(low, 2.0), 0.0)}
+    for name, width in widths.items():
+        assert borne.get(name, 0.0) == pytest.approx(50e3 * width / sum(widths.values()), abs=1e-3)
+    for narrow in (0.0, 0.5):  # the second reaches the ends of the blocks and no more
+        with pytest.raises(ValueError, match=r"at = 1.5 m lies above a gap between the faces"):
+            mr.Fill(top=3.0, spread=narrow).under(masonry, 50e3, 1.5)
+
+
 def test_a_load_spreads_two_to_one():
     """On three level blocks of 1 m, 0.6 m below the ground, a load 0.2 m wide is 0.2 + 2 x 0.5 x 0.6 m wide."""
     blocks = [box(i, i + 1, 0, 0.4, name=f"b{i}") for i in range(3)]

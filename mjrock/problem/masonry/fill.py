@@ -30,6 +30,8 @@ LOOKS_UP = 1e-6
 """Least z of the normal of a face that bears fill [-]."""
 ANCHORED, AS_RIGID = 5.0, 1e9
 """Length [m] and stiffness [N/m] of the ties that stand for passive pressure, of which only the strength counts."""
+TOUCHED = 1e-9
+"""Share of the width of a spread load up to which faces are touched at their ends alone [-]."""
 
 
 class Bearing(NamedTuple):
@@ -118,7 +120,8 @@ class Fill:
     def under(
         self, masonry: Masonry, force: float | ArrayLike, at: float | ArrayLike, width: float = 0.0
     ) -> tuple[Load, ...]:
-        """Loads on the ground as they press on the masonry, for `loads` or `effects`.
+        """Loads on the ground as they press on the masonry, for `loads` or `effects`. Where a load spreads over a gap
+        between faces, these bear all of it.
 
         Args:
             masonry: the masonry.
@@ -152,17 +155,21 @@ class Fill:
             name = "force" if len(forces) == 1 else f"force[{i}]"
             axle = Axle(require_within(name, each, 1e-3, 1e9, "N"), place, 2 * half, self.top)
             loads += self._under(faces, axle) if place in above else []
+        if not loads:
+            raise ValueError(f"at = {above[0]:g} m lies above a gap between the faces; give places above the faces")
         return tuple(loads)
 
     def _under(self, faces: list[Bearing], axle: Axle) -> list[Load]:
         """One axle as it presses on the faces."""
         ends, at, half = np.concatenate([face.ends for face in faces]), axle.at, 0.5 * axle.width
         low, high = (self._reached(ends, at, side, half) for side in (-1, 1))
+        spans = [(max(low, face.ends[0, 0]), min(high, face.ends[1, 0])) for face in faces]
+        covered = sum(max(right - left, 0.0) for left, right in spans)
+        if covered <= TOUCHED * (high - low) and high > low:
+            return []
         loads = list[Load]()
-        for face in faces:
-            left, right = max(low, face.ends[0, 0]), min(high, face.ends[1, 0])
-            holds = face.ends[0, 0] <= at <= face.ends[1, 0]
-            share = (right - left) / (high - low) if high > low else float(holds and not loads)
+        for face, (left, right) in zip(faces, spans, strict=True):
+            share = (right - left) / covered if high > low else float(left == right and not loads)
             if share > 0:
                 down = [left, right] if high > low else [at, at]
                 up = np.interp(down, [low, high], [at - half, at + half]) if high > low else [at, at]
