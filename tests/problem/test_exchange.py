@@ -287,6 +287,12 @@ def test_assemblies_that_compas_assembly_writes(tmp_path):
     assert [block.fixed for block in masonry.blocks] == [True, False, False]
 
 
+def test_a_text_of_34_bytes_is_no_stl_file(tmp_path):
+    """84 bytes and 50 for each of -1 facets are 34."""
+    with pytest.raises(ValueError, match=r"it is not an STL file, or is cut short: it has 34 bytes$"):
+        mr.Masonry.from_stl(written(tmp_path / "short.stl", b"solid".ljust(34)))
+
+
 def test_an_stl_file_that_ends_within_a_facet_says_so(tmp_path):
     path = tmp_path / "cut.stl"
     path.write_text("solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendsolid a\n")

@@ -86,7 +86,7 @@ def read_stl(path: AnyPath) -> list[Mesh]:
     """
     content = bytes_of(path)
     facets = struct.unpack_from("<I", content, 80)[0] if len(content) >= 84 else -1
-    if len(content) == 84 + 50 * facets:
+    if facets >= 0 and len(content) == 84 + 50 * facets:
         records = np.frombuffer(content, np.dtype([("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")]), offset=84)
         return [_facets("body", records["v"].reshape(-1, 3).astype(float))]
     if content.lstrip()[:5].lower() != b"solid" or b"facet" not in content:
