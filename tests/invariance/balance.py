@@ -60,7 +60,7 @@ def masses(case: mr.Case | mr.MasonryCase) -> np.ndarray:
     """Mass of each body with what is added to it [kg]."""
     if isinstance(case, mr.Case):
         return np.array([case.wall.mass])
-    return np.asarray(with_added_masses(case.masonry, case.passive)[0][list(case.masonry.free)])
+    return np.asarray(with_added_masses(case.masonry, case.passive).mass[list(case.masonry.free)])
 
 
 def scale_of(answer: mr.Response) -> float:

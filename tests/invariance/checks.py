@@ -100,7 +100,7 @@ def below_the_ground(scene: Scene, answer: mr.Response) -> float:
             shift = support.at(answer.t)
     low, high = corners.min(axis=0), corners.max(axis=0)
     turned, most = rotations(answer.pose), 0.0
-    rest = with_added_masses(masonry, answer.case.effects)[1]
+    rest = with_added_masses(masonry, answer.case.effects).centroid
     for i, number in enumerate(masonry.free):
         block, middle = masonry.blocks[number], rest[number] + answer.pose[:, i, :d] - shift
         placed = on_a_slope(middle[:, None] + (block.corners - rest[number]) @ turned[:, i].swapaxes(1, 2), level)

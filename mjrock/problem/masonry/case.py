@@ -131,7 +131,6 @@ class MasonryCase(Carrying):
             (bodies, 3), each within -1000 to 1000. None is rest. The rotation is positive where the top of a block
             turns to the right. In space x, y, z and the angular velocity about the three axes, shape (bodies, 6). A
             block that an actuator guides has none that its guide does not allow.
-
         supports: displacement histories of fixed blocks, by name, (t, dx, dz) in s and m, in space (t, dx, dy, dz), for
             `solve_explicit`.
         transverse: in space, the acceleration of the ground along y, or None; `motion` is that along x.
@@ -274,12 +273,12 @@ class MasonryCase(Carrying):
     @cached_property
     def masses(self) -> Array:
         """Mass of each block with its added masses [kg], shape (blocks,)."""
-        return with_added_masses(self.masonry, self.effects)[0]
+        return with_added_masses(self.masonry, self.effects).mass
 
     @cached_property
     def centroids(self) -> Array:
         """Centroid of each block with its added masses at rest [m], shape (blocks, d)."""
-        return with_added_masses(self.masonry, self.effects)[1]
+        return with_added_masses(self.masonry, self.effects).centroid
 
     @cached_property
     def rests(self) -> Array:

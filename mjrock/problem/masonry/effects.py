@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -68,8 +69,22 @@ def wrench(arm: Array, force: Array) -> Array:
     return np.array([*force, *turn])
 
 
-def with_added_masses(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Array, Array, Array]:
-    """Mass [kg], centroid [m] and inertia [kg m2] of every block with the masses added to it, shape (blocks, ...)."""
+class BlockMasses(NamedTuple):
+    """Masses of all blocks with what is added to them.
+
+    Args:
+        mass: [kg], shape (blocks,).
+        centroid: at rest [m], shape (blocks, d).
+        inertia: about the centroid [kg m2], shape (blocks,), in space the tensors, shape (blocks, 3, 3).
+    """
+
+    mass: Array
+    centroid: Array
+    inertia: Array
+
+
+def with_added_masses(masonry: Masonry, effects: tuple[Effect, ...]) -> BlockMasses:
+    """Masses of every block with the masses that effects add to it."""
     mass, inertia = (np.array([getattr(block, name) for block in masonry.blocks]) for name in ("mass", "inertia"))
     centroids = np.array(masonry.centroids)
     for effect in effects:
@@ -82,7 +97,7 @@ def with_added_masses(masonry: Masonry, effects: tuple[Effect, ...]) -> tuple[Ar
             inertia[i] += mass[i] * added / total * second
             centroids[i] += added / total * arm
             mass[i] = total
-    return mass, centroids, inertia
+    return BlockMasses(mass, centroids, inertia)
 
 
 def with_block_numbers(name: str, effect: Effect, masonry: Masonry) -> Effect:
