@@ -356,11 +356,6 @@ class Masonry(Constructors, NotebookPicture):
         return self.table.friction
 
     @property
-    def joint_damping(self) -> Array:
-        """xi of each joint [-], shape (joints,)."""
-        return self.table.xi
-
-    @property
     def joint_shear(self) -> Array:
         """k_s of each joint [N/m3], infinite for one that sticks rigidly, shape (joints,)."""
         return self.table.k_s
@@ -588,9 +583,9 @@ class Masonry(Constructors, NotebookPicture):
         wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)
         tries = [(wider, wider)] + ([(FINE_TOLERANCE, self.reach)] if self.tolerance > FINE_TOLERANCE else [])
         for tolerance, gap in tries:
-            distance = not_joined(self.blocks, self.joints, gap)
+            unjoined = not_joined(self.blocks, self.joints, gap)
             with suppress(OverlapError):
-                found = self._joints_with(tolerance, gap, distance)
+                found = self._joints_with(tolerance, gap, unjoined)
                 if odd := nearly([joint.name for joint in found], gap, self.tolerance):
                     warn_of(odd, Implausible)
         return self
