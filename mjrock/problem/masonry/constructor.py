@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, Self, Unpack, get_type_hints
 
-from .files.bodies import file_options
+from .files.bodies import FileOptions
 from .laws.joint_table import ByWord, Halved, JointOptions, one_by_one, with_known_keywords
 
 SECTION = re.compile(r"^(Args|Raises|Warns|Examples):\n", re.MULTILINE)
@@ -49,10 +49,10 @@ def of_reader(name: str, read: Callable[..., object]) -> classmethod[Any, Any, A
     (source,) = inspect.signature(read).parameters
 
     def make(cls: type[Any], given: dict[str, Any], options: JointOptions) -> Any:
-        thing = given.pop(source)
-        return cls._of_meshes(read, thing, file_options(**given), options)
+        meshes = given.pop(source)
+        return cls._of_meshes(read, meshes, FileOptions(**given), options)
 
-    return _class_method(name, make, read, file_options)
+    return _class_method(name, make, read, FileOptions)
 
 
 def _class_method(

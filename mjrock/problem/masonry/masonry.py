@@ -56,7 +56,7 @@ from .drawing import (
     split_faces,
     touches_text,
 )
-from .files.bodies import AnyPath, FileOptions, Mesh, Scale, about, blocks_of, file_options, meshes_of, names_of_list
+from .files.bodies import AnyPath, FileOptions, Mesh, Scale, about, blocks_of, meshes_of, required_names
 from .files.compas import compas_text
 from .files.dxf import DensityOfLayer, LengthOfLayer, polygons_of, read_dxf
 from .files.meshes import obj_text
@@ -505,13 +505,13 @@ class Masonry(Constructors, NotebookPicture):
             UserWarning: if the drawing is damaged and was repaired while it was read, or holds splines, hatches or
                 other areas, which are left out.
         """
-        given = file_options(fixed, ground=ground, scale=scale, unit=unit, up=up, convex=convex)
-        path, known = require_path("path", path), None if layers is None else names_of_list("layers", layers)
+        file = FileOptions(fixed, ground=ground, scale=scale, unit=unit, up=up, convex=convex)
+        path, read_layers = require_path("path", path), None if layers is None else required_names("layers", layers)
         with about(f"path = {path}"):
-            drawing = read_dxf(path, known)
+            drawing = read_dxf(path, read_layers)
             drawn = {outline.name: outline.corners for outline in drawing.outlines}
-            with sizes_in_errors(drawn, given.matrix(drawing.unit or 1.0)):
-                blocks = polygons_of(drawing, given, density, length)
+            with sizes_in_errors(drawn, file.matrix(drawing.unit or 1.0)):
+                blocks = polygons_of(drawing, file, density, length)
                 masonry = cls([ground_below_all(blocks), *blocks] if ground else blocks, **options)._touching()
         if drawing.unit not in (None, 1.0) and unit is None and scale is None and masonry._odd_sizes:
             stated = f"its header says that its unit is {drawing.unit:g} m, which a template may have left there"
@@ -536,20 +536,20 @@ class Masonry(Constructors, NotebookPicture):
 
     @classmethod
     def _of_meshes(
-        cls, read: Callable[[Any], list[Mesh]], source: object, given: FileOptions, options: JointOptions
+        cls, read: Callable[[Any], list[Mesh]], source: object, file: FileOptions, options: JointOptions
     ) -> Self:
         """Masonry of the meshes that a reader finds in a file, or in meshes that a caller has."""
         if read is not meshes_of:
             source = require_path("path", source)
         with about(f"path = {source}") if isinstance(source, Path) else nullcontext():
             meshes = read(source)
-            with sizes_in_errors({mesh.name: mesh.vertices for mesh in meshes}, given.matrix()):
-                blocks = blocks_of(meshes, given)
-                if given.ground:
+            with sizes_in_errors({mesh.name: mesh.vertices for mesh in meshes}, file.matrix()):
+                blocks = blocks_of(meshes, file)
+                if file.ground:
                     corners = np.concatenate([block.corners for block in blocks])
                     blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
                 masonry = cls(blocks, **options)._touching()
-        if given.up is None and (odd := odd_axis(masonry.blocks, masonry.space_joints, given.ground)):
+        if file.up is None and (odd := odd_axis(masonry.blocks, masonry.space_joints, file.ground)):
             warn_of(odd, Implausible)
         return masonry
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from operator import index
 from os import PathLike
 from typing import Annotated, NamedTuple
@@ -78,54 +79,17 @@ class Mesh(NamedTuple):
 
 
 @contextmanager
-def about(what: str, errors: tuple[type[Exception], ...] = (ValueError,)) -> Iterator[None]:
+def about(subject: str, errors: tuple[type[Exception], ...] = (ValueError,)) -> Iterator[None]:
     """An error that is raised within becomes a ValueError that names a file or body first."""
     try:
         yield
     except errors as error:
-        raise ValueError(f"{what}: {error}") from None
+        raise ValueError(f"{subject}: {error}") from None
 
 
-class FileOptions(NamedTuple):
-    """The arguments that describe a file, see `file_options`."""
-
-    fixed: Sequence[str] = ()
-    ground: bool = False
-    density: float = 2000.0
-    scale: float | None = None
-    unit: str | None = None
-    up: str | None = None
-    convex: str | None = None
-
-    def matrix(self, own: float = 1.0, usual: str = "z") -> Array:
-        """What takes places of the file to m with z upwards, shape (3, 3).
-
-        Args:
-            own: unit that the file states [m], taken where no other is given.
-            usual: axis that points upwards where none is given.
-
-        Raises:
-            ValueError: for a unit or an axis that is none, or a unit beside a scale.
-        """
-        scale = own if self.scale is None else self.scale
-        if self.unit is not None:
-            if self.scale is not None:
-                raise ValueError(f"unit = {shown(self.unit)} and scale = {self.scale:g} are both given; give one")
-            scale = LENGTH_UNITS[require_one_of("unit", self.unit, LENGTH_UNITS)]
-        return scale * np.array(UPWARDS[require_one_of("up", usual if self.up is None else self.up, UPWARDS)])
-
-
-def file_options(
-    fixed: Sequence[str] = (),
-    *,
-    ground: bool = False,
-    density: Density = 2000.0,
-    scale: Scale = None,
-    unit: str | None = None,
-    up: str | None = None,
-    convex: str | None = None,
-) -> FileOptions:
-    """The arguments that describe a file, checked.
+@dataclass(frozen=True)
+class FileOptions:
+    """The arguments that describe a file.
 
     Args:
         fixed: names of bodies that are fixed, beside those that the file marks as supports.
@@ -148,20 +112,51 @@ def file_options(
         Implausible: as `Masonry` does, for masonry that seems to stand along another axis, and for faces that lie
             as little apart as twenty tolerances. A UserWarning gives the volume that hulls add.
     """
-    if convex is not None:
-        require_one_of("convex", convex, CONVEX)
-    given = FileOptions(names_of_list("fixed", fixed), require_flag("ground", ground), density, scale, unit, up, convex)
-    given.matrix()  # which refuses a unit, a scale or an axis
-    return given
+
+    fixed: Sequence[str] = ()
+    ground: bool = field(default=False, kw_only=True)
+    density: Density = field(default=2000.0, kw_only=True)
+    scale: Scale = field(default=None, kw_only=True)
+    unit: str | None = field(default=None, kw_only=True)
+    up: str | None = field(default=None, kw_only=True)
+    convex: str | None = field(default=None, kw_only=True)
+
+    def __post_init__(self) -> None:
+        if self.convex is not None:
+            require_one_of("convex", self.convex, CONVEX)
+        required_names("fixed", self.fixed)
+        require_flag("ground", self.ground)
+        self.matrix()  # which refuses a unit, a scale or an axis
+
+    def matrix(self, own: float = 1.0, usual: str = "z") -> Array:
+        """What takes places of the file to m with z upwards, shape (3, 3).
+
+        Args:
+            own: unit that the file states [m], taken where no other is given.
+            usual: axis that points upwards where none is given.
+
+        Raises:
+            ValueError: for a unit or an axis that is none, or a unit beside a scale.
+        """
+        scale = own if self.scale is None else self.scale
+        if self.unit is not None:
+            if self.scale is not None:
+                raise ValueError(f"unit = {shown(self.unit)} and scale = {self.scale:g} are both given; give one")
+            scale = LENGTH_UNITS[require_one_of("unit", self.unit, LENGTH_UNITS)]
+        return scale * np.array(UPWARDS[require_one_of("up", usual if self.up is None else self.up, UPWARDS)])
 
 
-def names_of_list(what: str, given: Sequence[str]) -> Sequence[str]:
-    """Names that a caller gives in a list, checked."""
-    if not isinstance(given, list | tuple):
-        raise TypeError(f"{what} = {shown(given)} is not a list of names")
-    for name in given:
-        require_text(what, name)
-    return given
+def required_names(argument: str, names: Sequence[str]) -> Sequence[str]:
+    """A list of names.
+
+    Raises:
+        TypeError: with the argument, for any other.
+    """
+    if not isinstance(names, list | tuple):
+        raise TypeError(f"{argument} = {shown(names)} is not a list of names")
+    for name in names:
+        require_text(argument, name)
+    return names
 
 
 def meshes_of(meshes: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]]) -> list[Mesh]:
@@ -359,7 +354,7 @@ class Bound(NamedTuple):
         return bool(max(off) <= SAME_PLANE * extent)
 
 
-def blocks_of(meshes: Sequence[Mesh], given: FileOptions) -> list[SolidBlock]:
+def blocks_of(meshes: Sequence[Mesh], file: FileOptions) -> list[SolidBlock]:
     """The blocks of meshes of a file; names that several have are numbered.
 
     The density is that of meshes whose file has none [kg/m3]. Bodies are fixed that are named, or are marked as a
@@ -371,7 +366,7 @@ def blocks_of(meshes: Sequence[Mesh], given: FileOptions) -> list[SolidBlock]:
     Warns:
         UserWarning: of the volume that hulls add.
     """
-    turn, fixed, convex, density = given.matrix(), given.fixed, given.convex, given.density
+    turn, fixed, convex, density = file.matrix(), file.fixed, file.convex, file.density
     with np.errstate(invalid="ignore"):  # an infinite coordinate is named below
         meshes = [mesh._replace(vertices=mesh.vertices @ turn.T) for mesh in meshes]
     bodies = _all_bodies(meshes)

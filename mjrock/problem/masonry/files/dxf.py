@@ -234,19 +234,19 @@ def _corners(polyline: LWPolyline | Polyline) -> Array:
     return places
 
 
-def polygons_of(drawing: DxfDrawing, given: FileOptions, density: OfLayer, length: OfLayer) -> list[FlatBlock]:
+def polygons_of(drawing: DxfDrawing, file: FileOptions, density: OfLayer, length: OfLayer) -> list[FlatBlock]:
     """The blocks of a drawing, in m with z upwards.
 
     Args:
         drawing: the outlines and their unit.
-        given: the arguments that describe the file; layers, and names of blocks, are fixed.
+        file: the arguments that describe the file; layers, and names of blocks, are fixed.
         density: [kg/m3].
         length: out of the plane [m].
 
     Raises:
         ValueError: with the name of the block or layer, for what is no convex block, or is not there.
     """
-    turn, fixed = given.matrix(1.0 if drawing.unit is None else drawing.unit, "y"), given.fixed
+    turn, fixed = file.matrix(1.0 if drawing.unit is None else drawing.unit, "y"), file.fixed
     layers = {outline.layer: None for outline in drawing.outlines}
     known = {*layers, *(outline.name for outline in drawing.outlines)}
     for name in fixed:
@@ -263,8 +263,8 @@ def polygons_of(drawing: DxfDrawing, given: FileOptions, density: OfLayer, lengt
     polygons: dict[str, FlatBlock] = {}
     dented: dict[str, tuple[Mesh, tuple[float, float]]] = {}
     for outline in drawing.outlines:
-        counted, layer = outline.layer in fixed or outline.name in fixed, outline.layer
-        numbers = of_layer("density", density, layer), of_layer("length", length, layer)
+        is_fixed, layer = outline.layer in fixed or outline.name in fixed, outline.layer
+        density_and_length = of_layer("density", density, layer), of_layer("length", length, layer)
         corners = outline.corners @ turn.T
         begins = f"block {outline.name}, which begins at {corners[0, 0]:g}, {corners[0, 2]:g} m"
         if np.ptp(corners[:, 1]) > CLOSED_WITHIN * np.ptp(corners, axis=0).max():
@@ -272,25 +272,25 @@ def polygons_of(drawing: DxfDrawing, given: FileOptions, density: OfLayer, lengt
         ring = corners[:, [0, 2]]
         with about(begins, (ValueError, TypeError)):
             try:
-                polygons[outline.name] = Polygon(ring, *numbers, counted, outline.name)
+                polygons[outline.name] = Polygon(ring, *density_and_length, is_fixed, outline.name)
             except InwardsError as error:
-                if given.convex is None:
+                if file.convex is None:
                     raise ValueError(f"{error}; convex='parts' cuts it, and convex='hull' fills it") from None
                 places, faces = prism(ring, 1.0)
-                dented[outline.name] = Mesh(outline.name, places, list(faces), counted), numbers
+                dented[outline.name] = Mesh(outline.name, places, list(faces), is_fixed), density_and_length
     meshes = [mesh for mesh, _ in dented.values()]
-    for block in blocks_of(meshes, FileOptions(convex=given.convex)) if meshes else ():
+    for block in blocks_of(meshes, FileOptions(convex=file.convex)) if meshes else ():
         polygons[str(block.name)] = _flat(block, dented[str(block.name)][1])
     return [polygons[outline.name] for outline in drawing.outlines]
 
 
-def _flat(block: SolidBlock, numbers: tuple[float, float]) -> FlatBlock:
+def _flat(block: SolidBlock, density_and_length: tuple[float, float]) -> FlatBlock:
     """A prism along y as a block of the plane, with its density and length."""
     polygons = []
     for part in block.parts:
         front = part.corners[part.corners[:, 1] < 0][:, [0, 2]]
         about = front - front.mean(axis=0)
-        polygons.append(Polygon(front[np.argsort(np.arctan2(about[:, 1], about[:, 0]))], *numbers))
+        polygons.append(Polygon(front[np.argsort(np.arctan2(about[:, 1], about[:, 0]))], *density_and_length))
     if len(polygons) > 1:
         return Compound(polygons, block.fixed, block.name)
     return replace(polygons[0], fixed=block.fixed, name=block.name)
