@@ -8,7 +8,14 @@ import pytest
 from scipy.optimize import Bounds, LinearConstraint, milp
 
 import mjrock as mr
-from mjrock.problem.masonry.limit.limit_state import SHARED, TURNS, Programme, _met, states_without_dilatancy
+from mjrock.problem.masonry.limit.limit_state import (
+    SHARED,
+    TURNS,
+    LimitProblem,
+    Programme,
+    _met,
+    states_without_dilatancy,
+)
 from mjrock.problem.masonry.limit.statics import Pulls, weight_of
 from scripts.checks import limit_analysis as study
 
@@ -270,9 +277,9 @@ def test_a_state_that_does_not_hold_is_none():
     masonry = study.masonry_of([[1], [0.5, 0.5]], 0.9)
     grown = np.zeros((3, 3))
     grown[:, 0] = [mr.GRAVITY * masonry.blocks[i].mass for i in masonry.free]
-    programme = Programme.from_forces(
-        masonry, weight_of(masonry), grown, masonry.lines.tangents, Pulls.from_forces(masonry)
-    )
+    ties = Pulls.from_forces(masonry)
+    problem = LimitProblem(masonry, weight_of(masonry), grown, masonry.lines.tangents, ties)
+    programme = Programme.from_problem(problem)
     state = states_without_dilatancy(programme)[0]
     assert programme.holds(state)
     assert not programme.holds(state._replace(multiplier=state.multiplier + 1e-3))

@@ -17,8 +17,8 @@ from ...wall.effect import Effect
 from ..blocks.joints_in_space import tangent_axes_along
 from ..laws.joint_law import shear_limit
 from ..masonry import Masonry
-from .limit_state import Programme, states_without_dilatancy
-from .statics import Pulls, bonded, cone_edges, cones, least_cost, method, moving, sizes_of, weight_of
+from .limit_state import LimitProblem, Programme, states_without_dilatancy
+from .statics import Pulls, bond_forces, cone_edges, cones, least_cost, method, moving, sizes_of, weight_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +146,8 @@ def limit_of(
     weight, lines, resultant = weight_of(masonry), masonry.lines, grown[:, :3].sum(axis=0)
     turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED * np.abs(grown[:, :3]).sum()
     tangents = tangent_axes_along(lines.normal, resultant) if turned else lines.tangents
-    state = masonry, weight + np.ravel(applied), grown, tangents, ties or Pulls.from_forces(masonry)
-    forces = _associated(*state, least) if associated else _without_dilatancy(*state)
+    problem = LimitProblem(masonry, weight + np.ravel(applied), grown, tangents, ties or Pulls.from_forces(masonry))
+    forces = _associated(problem, least) if associated else _without_dilatancy(problem)
     if forces is None:
         return Collapse(math.inf, push, (), np.zeros_like(grown), masonry=masonry)
     total, multipliers = float(np.abs(weight).sum()), forces.multipliers
@@ -187,18 +187,18 @@ class LimitForces(NamedTuple):
     pulls: Array
 
 
-def _associated(
-    masonry: Masonry, constant: Array, grown: Array, tangents: tuple[Array, ...], ties: Pulls, least: float
-) -> LimitForces | None:
-    """The state of associated friction, None where nothing gives way."""
+def _associated(problem: LimitProblem, least: float) -> LimitForces | None:
+    """The state of associated friction, None where nothing gives way. The multiplier is `least` at least [-]."""
+    masonry, constant, grown, tangents, ties = problem
     sizes, friction, total = sizes_of(masonry), masonry.joint_friction, float(np.abs(weight_of(masonry)).sum())
     pressed, lines = cones(masonry, friction, tangents), masonry.lines
-    pulls, strengths, directions = bonded(masonry, tangents)
-    raised, count, end = (grown.ravel() / total / sizes)[:, None], pressed.shape[1], pressed.shape[1] + len(strengths)
-    highest = np.concatenate([np.full(count, np.inf), strengths / total, ties.strength / total, [np.inf]])
+    bonds = bond_forces(masonry, tangents)
+    raised, count = (grown.ravel() / total / sizes)[:, None], pressed.shape[1]
+    end = count + len(bonds.limits)
+    highest = np.concatenate([np.full(count, np.inf), bonds.limits / total, ties.strength / total, [np.inf]])
     bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))
     bounds[-1, 0], prices[-1] = least, -1.0
-    columns = hstack([pressed, pulls, ties.columns, raised])
+    columns = hstack([pressed, bonds.columns, ties.columns, raised])
     answer = least_cost(prices, A_eq=columns, b_eq=-constant / total / sizes, bounds=bounds, method=method(masonry))
     if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
         return None  # unbounded
@@ -211,18 +211,16 @@ def _associated(
         shear_limit(masonry.table.laws(lines.joint, friction=friction[lines.joint]), 1.0),
     )
     forces = (shares * (lines.normal + np.asarray(limits)[:, None] * cone_edges(tangents))).sum(axis=0)
-    forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * directions).sum(axis=0)
+    forces += (answer.x[count:end].reshape(-1, len(lines.k), 1) * bonds.directions).sum(axis=0)
     return LimitForces((float(answer.x[-1]),), -np.asarray(answer.eqlin.marginals), forces, answer.x[end:-1])
 
 
-def _without_dilatancy(
-    masonry: Masonry, constant: Array, grown: Array, tangents: tuple[Array, ...], ties: Pulls
-) -> LimitForces | None:
+def _without_dilatancy(problem: LimitProblem) -> LimitForces | None:
     """The least state without dilatancy, None where nothing gives way."""
-    programme = Programme.from_forces(masonry, constant, grown, tangents, ties)
+    programme = Programme.from_problem(problem)
     states = states_without_dilatancy(programme)
     if not states:
         return None
     multipliers, x = tuple(state.multiplier for state in states), states[0].x
     pulls = x[programme.pulled : programme.pulled + programme.ties]
-    return LimitForces(multipliers, states[0].p[: programme.unknowns], programme.on_lines(masonry, x), pulls)
+    return LimitForces(multipliers, states[0].p[: programme.unknowns], programme.on_lines(problem.masonry, x), pulls)

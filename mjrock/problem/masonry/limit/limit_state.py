@@ -58,6 +58,24 @@ EXACT = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e
 """Options of linear programmes: rates and forces are compared with zero."""
 
 
+class LimitProblem(NamedTuple):
+    """Rigid masonry, and what acts on it at its limit.
+
+    Args:
+        masonry: the masonry.
+        constant: constant forces and moments on the free blocks, the weight among them [N, N m], shape (unknowns,).
+        grown: forces and moments that grow [N, N m], shape (free, 3), in space (free, 6).
+        tangents: directions along the faces at which the edges of the cones of friction begin, shape (m, d) each.
+        ties: those that hold the blocks.
+    """
+
+    masonry: Masonry
+    constant: Array
+    grown: Array
+    tangents: tuple[Array, ...]
+    ties: Pulls
+
+
 class State(NamedTuple):
     """A state at the limit.
 
@@ -100,18 +118,13 @@ class Programme:
     method: str
 
     @classmethod
-    def from_forces(
-        cls, masonry: Masonry, constant: Array, grown: Array, tangents: tuple[Array, ...], ties: Pulls
-    ) -> Programme:
-        """Those of masonry under forces that are constant, its weight among them, and forces that grow [N, N m], of all
-        unknowns, and of ties.
-
-        The edges of the cones begin at the first of the directions `tangents` along the faces.
-        """
+    def from_problem(cls, problem: LimitProblem) -> Programme:
+        """Those of masonry under constant forces, forces that grow, and ties."""
+        masonry, ties = problem.masonry, problem.ties
         lines, sizes = masonry.lines, sizes_of(masonry)
         m, group = len(lines.k), np.arange(len(lines.k)) if masonry.in_space else lines.joint
         leader, of_line = np.unique(group, return_index=True, return_inverse=True)[1:]
-        edges = cone_edges(tangents)
+        edges = cone_edges(problem.tangents)
         rubbing = [rates(masonry.blocks, lines, edge)[leader] for edge in edges]
         limits = np.asarray(shear_limit(masonry.table.laws(lines.joint), 1.0))
         friction, whole = csr_array((limits, (of_line, np.arange(m))), shape=(len(leader), m)), eye_array(len(leader))
@@ -121,15 +134,24 @@ class Programme:
         rest = csr_array((len(leader), matrix.shape[1] - m))
         grip = csc_array(block_array([[csr_array((len(sizes), m)), None], [friction, rest]]))
         total, none = float(np.abs(weight_of(masonry)).sum()), np.zeros(len(leader))
-        down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (constant, grown))
+        down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (problem.constant, problem.grown))
         count, yields = len(ties.strength), np.isfinite(ties.strength)
         if count:  # a pull and what is left of it are the strength
             pulls, limit = vstack([ties.columns, csr_array((len(leader), count))]), csr_array(eye_array(count))[yields]
             matrix = csc_array(block_array([[matrix, pulls, None], [None, -limit, -eye_array(limit.shape[0])]]))
             grip = csc_array(block_array([[grip, None], [None, csr_array((limit.shape[0], count + limit.shape[0]))]]))
             down, pushed = np.append(down, ties.strength[yields] / total), np.append(pushed, np.zeros(limit.shape[0]))
-        numbers = len(sizes), count
-        return cls(matrix, grip, down, pushed, edges[:, leader], leader, *numbers, method(masonry))
+        return cls(
+            matrix,
+            grip,
+            weight=down,
+            grown=pushed,
+            edges=edges[:, leader],
+            leader=leader,
+            unknowns=len(sizes),
+            ties=count,
+            method=method(masonry),
+        )
 
     def forces(self, cost: Array, price: float, none_at: Flags | None = None) -> scipy.optimize.OptimizeResult:
         """The forces and the multiplier that cost least, the multiplier at `price`, with no force where `none_at`."""

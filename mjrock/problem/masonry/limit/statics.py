@@ -31,7 +31,7 @@ ROUNDED = 1e-3
 """To how much a coefficient of friction that is lacking is rounded up [-]."""
 NUDGE = 1e-3
 """Push to the side, over the weight, under which blocks fall that stand at their limit alone [-]."""
-DEAR = 1e-3
+PRICE_BEYOND_FRICTION = 1e-3
 """Price of a force beyond the friction that a joint has, over that of one that is missing [-]."""
 EDGES = 8
 """Edges of the pyramid that stands for the cone of friction in space. They lie on the cone. Halfway between two of them
@@ -109,7 +109,7 @@ def nudged(masonry: Masonry, applied: Array | float = 0.0) -> tuple[tuple[str, .
     """What falls of rigid blocks that stand at their limit alone: under a nudge sideways, as a share of the weight.
 
     Returns:
-        The names of the blocks, and whether more friction would keep them; None of blocks that stand the nudge any way.
+        The names of the blocks, and whether more friction would keep them; None of blocks that stand it to all sides.
     """
     weight = weight_of(masonry).reshape(len(masonry.free), -1)
     for axis in range(masonry.freedom.translations - 1):
@@ -180,19 +180,30 @@ def cones(masonry: Masonry, friction: Array, tangents: tuple[Array, ...] | None 
     return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
 
 
-def bonded(masonry: Masonry, tangents: tuple[Array, ...] | None = None) -> tuple[csc_array, Array, Array]:
-    """What bonds hold beyond the cones: pulls, and forces along the faces either way.
+class BondForces(NamedTuple):
+    """Forces that the bonds of contact lines hold, in n directions; no columns where no joint has a bond.
+
+    Args:
+        columns: generalised forces of unit forces, moments over the size of the block, shape (unknowns, n m).
+        limits: their limits [N], shape (n m,).
+        directions: unit vectors, shape (n, m, d).
+    """
+
+    columns: csc_array
+    limits: Array
+    directions: Array
+
+
+def bond_forces(masonry: Masonry, tangents: tuple[Array, ...] | None = None) -> BondForces:
+    """What bonds hold beyond the cones: pulls, and forces along the faces in both senses.
 
     In space the forces along a face fill a square about the circle of the cohesion.
-
-    Returns:
-        Generalised forces of unit forces, moments over the size of the block, shape (unknowns, n m), their limits [N],
-        shape (n m,), and their directions, shape (n, m, d). None has a column where no joint has a bond.
     """
     lines, tangents = masonry.lines, tangents or masonry.lines.tangents
     directions = np.stack([-lines.normal, *(sign * direction for direction in tangents for sign in (1.0, -1.0))])
     if not any(masonry.bonds):
-        return csc_array((len(masonry.free) * masonry.freedom.nv, 0)), np.zeros(0), directions[:0]
+        none = csc_array((len(masonry.free) * masonry.freedom.nv, 0))
+        return BondForces(none, np.zeros(0), directions[:0])
     both = zip(masonry.joints, masonry.bonds, strict=True)
     if pulling := [joint.name for joint, bond in both if isinstance(bond, Own) and bond.pulls]:
         raise ValueError(
@@ -203,7 +214,7 @@ def bonded(masonry: Masonry, tangents: tuple[Array, ...] | None = None) -> tuple
     pull, along = (area * strengths(masonry.bonds, name)[lines.joint] for name in ("tension", "cohesion"))
     columns = vstack([rates(masonry.blocks, lines, direction) for direction in directions]).T
     limits = np.concatenate([pull, *[along] * (2 * len(tangents))])
-    return csc_array(diags_array(1 / sizes_of(masonry)) @ columns), limits, directions
+    return BondForces(csc_array(diags_array(1 / sizes_of(masonry)) @ columns), limits, directions)
 
 
 def cone_edges(tangents: tuple[Array, ...]) -> Array:
@@ -215,25 +226,25 @@ def cone_edges(tangents: tuple[Array, ...]) -> Array:
 
 
 def _balanced(
-    masonry: Masonry, applied: Array | float, friction: Array, dear: Array | None = None, ties: Pulls | None = None
+    masonry: Masonry, applied: Array | float, friction: Array, wider: Array | None = None, ties: Pulls | None = None
 ) -> scipy.optimize.OptimizeResult:
     """Forces of the contact lines that leave the least of the weight unbalanced, over the weight of all blocks.
 
-    The unknowns are the forces along the edges of the cone of each line, then what is missing. With `dear`, a wider
-    cone, forces along its edges come second and are used as little as possible.
+    The unknowns are the forces along the edges of the cone of each line, then what is missing. With the friction of a
+    `wider` cone, forces along its edges come second and are used as little as possible.
     """
     weight = weight_of(masonry) + np.ravel(applied)
     total = float(np.abs(weight).sum())
-    # the edges of the cone of each line carry its force; what is missing pushes either way
+    # the edges of the cone of each line carry its force; what is missing pushes in both senses
     edges, cost = [], []
-    for cone, price in ((friction, 0.0), (dear, DEAR)):
+    for cone, price in ((friction, 0.0), (wider, PRICE_BEYOND_FRICTION)):
         if cone is not None:
             edges.append(cones(masonry, cone))
             cost.append(np.full(edges[-1].shape[1], price))
     missing = eye_array(len(weight))
-    (pulls, limits, _), ties = bonded(masonry), ties or Pulls.from_forces(masonry)
-    limits = np.append(limits, ties.strength)
-    columns = hstack([*edges, missing, -missing, pulls, ties.columns])
+    bonds, ties = bond_forces(masonry), ties or Pulls.from_forces(masonry)
+    limits = np.append(bonds.limits, ties.strength)
+    columns = hstack([*edges, missing, -missing, bonds.columns, ties.columns])
     prices = np.concatenate([*cost, np.ones(2 * len(weight)), np.zeros(len(limits))])
     highest = np.append(np.full(len(prices) - len(limits), np.inf), limits / total)
     bounds = np.column_stack([np.zeros_like(highest), highest])
@@ -248,7 +259,7 @@ def _lacking(masonry: Masonry, forces: Array) -> Flags:
 
     Args:
         masonry: the masonry.
-        forces: the answer of the programme of `_balanced` without `dear`.
+        forces: the answer of the programme of `_balanced` without a wider cone.
     """
     number, count = free_numbers(masonry.blocks), len(masonry.free)
     pairs = number[np.reshape([(joint.below, joint.above) for joint in masonry.joints], (-1, 2))]
