@@ -49,7 +49,7 @@ def course(scene, velocity=None, duration=1.0, motion=None, *, pose=None, vertic
 
 def unbalanced(scene):
     """Forces that are missing at rest, with those of friction, shape (n nv,), and friction over its limit [N]."""
-    potential, (pose, drag) = scene.potential, scene.found
+    potential, (pose, drag) = scene.potential, scene.rest_state
     pose = pose.ravel()
     held = sum(rates.T @ along for rates, along in zip(potential.slip_rates(pose), drag.T, strict=True))
     limit = scene.contacts.friction * scene.contacts.k * scene.bears

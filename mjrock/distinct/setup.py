@@ -167,7 +167,7 @@ def masonry_at_rest(scene: Scene) -> AtRest:
     """Masonry at rest, or as drawn where it is not settled, computed once for each scene."""
     system = system_of(scene, ended=True)
     if scene.settled is None:
-        pose, drag = scene.found
+        pose, drag = scene.rest_state
         set_initial_friction(system.lines, drag)
         at_pose(system, pose)
     else:

@@ -187,7 +187,20 @@ class Trial(NamedTuple):
         return float(np.abs(self.missing).sum())
 
 
-def settled(potential: Potential, k_s: Array) -> tuple[Array, Array]:
+class RestState(NamedTuple):
+    """A pose of rest, and the friction there.
+
+    Args:
+        pose: shape (n, nq).
+        friction: on the bodies of the points along the tangential directions of `Potential.slip_rates` [N], shape
+            (m, directions).
+    """
+
+    pose: Array
+    friction: Array
+
+
+def settled(potential: Potential, k_s: Array) -> RestState:
     """The pose in which the springs of contacts and ties carry weight and forces, and the friction there.
 
     Where nothing holds a direction, the bodies stay where they are.
@@ -195,10 +208,6 @@ def settled(potential: Potential, k_s: Array) -> tuple[Array, Array]:
     Args:
         potential: of the bodies.
         k_s: stiffness of the contacts along their faces [N/m], infinite where they stick rigidly, shape (m,).
-
-    Returns:
-        The pose, shape (n, nq), and the friction on the bodies of the points along the tangential directions of
-        `Potential.slip_rates` [N], shape (m, directions).
 
     Raises:
         UnsettledError: if no such pose is found near the undeformed one, or the bodies fall from it.
@@ -226,13 +235,13 @@ def shown_search(potential: Potential) -> Bar:
     return Bar(f"pose of rest, about {needed / 1e9:.2g} GB", "poses")
 
 
-def search_from(potential: Potential, search: Search, soft: float | None) -> tuple[Array, Array]:
+def search_from(potential: Potential, search: Search, soft: float | None) -> RestState:
     """What `settled` returns, by a search from the undeformed pose, or from the pose of rest on springs of another
     shear stiffness: `soft` times the normal stiffness [-]."""
     k, freedom = potential.structure.places.k, potential.structure.places.freedom
     start = None if soft is None else search_pose(potential, search._replace(shear=soft * k))[0]
     pose, friction = search_pose(potential, search, start)
-    return pose.reshape(-1, freedom.nq), friction.drag
+    return RestState(pose.reshape(-1, freedom.nq), friction.drag)
 
 
 def settled_without_slip(potential: Potential) -> Array:

@@ -27,7 +27,7 @@ from .dampers import Dampers
 from .masses import kinetic_energies
 from .parts import Bodies, ConstantForces, ContactPoints, JointSprings, Limits, Links, require_on
 from .potential import Potential, Structure, energies, highest_frequency, rocking_frequency, tie_frequency
-from .rest import lowered, settled
+from .rest import RestState, lowered, settled
 
 RADIUS = 1e-6
 """Radius of the contact spheres, over the largest extent of a body from its centroid [-]. Friction acts at their
@@ -182,11 +182,11 @@ class Scene:
     @cached_property
     def at_rest(self) -> Array:
         """Pose of the bodies at rest under their weight, shape (n, nq)."""
-        return self.found[0] if self.settled is None else self.settled
+        return self.rest_state.pose if self.settled is None else self.settled
 
     @cached_property
-    def found(self) -> tuple[Array, Array]:
-        """The pose of rest that was searched for, and the friction that holds the bodies there, see `rest.settled`."""
+    def rest_state(self) -> RestState:
+        """The pose of rest that the search finds, and the friction that holds the bodies there, see `rest.settled`."""
         return settled(self.potential, np.asarray(self.contacts.k_s))
 
     @cached_property

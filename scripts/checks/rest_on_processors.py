@@ -83,7 +83,7 @@ def rest(seed: int, stiffest: float = STIFFEST) -> Rest | None:
         return None
     scene = standing_masonry(masonry)
     try:
-        pose, friction = scene.found
+        pose, friction = scene.rest_state
     except ValueError as error:
         return Rest(label, str(error), np.zeros(0), np.zeros(0))
     return Rest(label, "", pose.ravel(), np.append(scene.contacts.k * scene.bears, friction.ravel()))

@@ -207,7 +207,7 @@ def plain(one):
 def at_rest(masonry, effects, one):
     case = mr.MasonryCase(masonry(one), 1.0, effects=effects)
     scene = standing_masonry(case.masonry, case.effects)
-    pose, friction = scene.found
+    pose, friction = scene.rest_state
     normal = scene.contacts.k * scene.bears
     return {
         "farthest way [m]": np.abs(pose - np.round(pose)).max(),

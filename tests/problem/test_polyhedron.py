@@ -17,8 +17,8 @@ def test_a_box():
     assert box.centroid == pytest.approx([1, 2, 3])
     moments = m / 12 * np.array([0.16 + 4.0, 0.36 + 4.0, 0.36 + 0.16])
     assert box.inertia == pytest.approx(np.diag(moments), rel=1e-12, abs=1e-9)
-    assert box.principal[0] == pytest.approx(moments)
-    assert (box.principal[1] == np.eye(3)).all()
+    assert box.principal.moments == pytest.approx(moments)
+    assert (box.principal.axes == np.eye(3)).all()
     assert box.size == pytest.approx(0.5 * math.sqrt(0.36 + 0.16 + 4.0))
     assert len(box.faces) == 6
     assert sorted(np.abs(box.edges).tolist()) == [[0, 0, 1], [0, 1, 0], [1, 0, 0]]

@@ -45,7 +45,7 @@ def test_rest_is_the_same_under_the_kernels_of_other_processors(tmp_path):
 def rest_of(blocks, joints):
     """Displacements of the free blocks at rest, by name."""
     masonry = mr.Masonry(blocks, joints=joints)
-    return dict(zip((masonry.names[i] for i in masonry.free), standing_masonry(masonry).found[0], strict=True))
+    return dict(zip((masonry.names[i] for i in masonry.free), standing_masonry(masonry).rest_state.pose, strict=True))
 
 
 def redrawn(blocks, by=0.0, sense=1):
@@ -92,7 +92,7 @@ def test_an_arch_that_is_not_symmetric_falls_where_its_mirror_image_does(heavier
 def test_a_symmetric_arch_leans_in_its_motion_too():
     """A damped run from the drawn pose comes near the symmetric pose, leaves it and ends in a leaning one."""
     arch = mr.Masonry.arch(2.0, 0.22, voussoirs=5, joints=mr.Dry(1e9, friction=0.7, xi=0.05))
-    pose = standing_masonry(arch).found[0]
+    pose = standing_masonry(arch).rest_state.pose
     end = mr.solve_explicit(mr.MasonryCase(arch, 3.0, settled=False), mass_damping=5.0).pose[-1]
     mirrored = pose[::-1] * [-1, 1, -1]
     assert min(np.abs(end - pose).max(), np.abs(end - mirrored).max()) < 1e-3 * np.abs(pose).max()
@@ -104,7 +104,7 @@ def test_an_arch_that_friction_keeps_stable_comes_to_the_same_rest_in_its_motion
     """Without the stiffness that friction has as it turns with the blocks, its symmetric pose would be unstable. Points
     that slip keep some of the little push."""
     arch = structure(1356)[1]
-    pose, velocity = standing_masonry(arch).found[0], np.tile([2e-3, 0.0, 0.0], (41, 1))
+    pose, velocity = standing_masonry(arch).rest_state.pose, np.tile([2e-3, 0.0, 0.0], (41, 1))
     np.testing.assert_allclose(pose, pose[::-1] * [-1, 1, -1], atol=1e-9 * np.abs(pose).max())
     case = mr.MasonryCase(arch, 5.0, settled=False, velocity=velocity)
     end = mr.solve_explicit(case, mass_damping=20.0).pose[-1]

@@ -132,7 +132,7 @@ def lines_of(
 
 def _outer(above: float, below: float) -> tuple[bool, ...]:
     """Whether the point of a joint is on the block below, as that is farther from the middle of the masonry, apart from
-    heights [m]. Both ways where the two blocks are as far."""
+    heights [m]. Both answers where the two blocks are as far."""
     return (False, True) if abs(below - above) <= EDGE_WITHIN else (below > above,)
 
 
@@ -234,6 +234,6 @@ def masses_of(blocks: Sequence[AnyBlock]) -> tuple[Array, csr_array | None]:
     """
     solids = [block for block in blocks if not isinstance(block, Polygon) and block.in_space and not block.fixed]
     if solids:
-        axes = block_diagonal(np.array([part for block in solids for part in (np.eye(3), block.principal[1])]))
-        return np.array([(*[block.mass] * 3, *block.principal[0]) for block in solids]).ravel(), axes
+        axes = block_diagonal(np.array([part for block in solids for part in (np.eye(3), block.principal.axes)]))
+        return np.array([(*[block.mass] * 3, *block.principal.moments) for block in solids]).ravel(), axes
     return np.array([(block.mass, block.mass, block.inertia) for block in blocks if not block.fixed]).ravel(), None

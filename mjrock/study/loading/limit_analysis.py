@@ -18,7 +18,7 @@ from ...linear import rates_of
 from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import applied, inertia_of_added_masses, pulls_of
 from ...problem.masonry.limit.collapse import Collapse, LimitLoads, UnbalancedError, limit_of, pushed
-from ...problem.masonry.limit.pose import Moves, gaps_of, posed, spans_in
+from ...problem.masonry.limit.pose import Moves, moved_lines, posed, spans_in
 from ...problem.masonry.limit.statics import MOVES, Pulls, falling
 from ...problem.masonry.lines import free_numbers, mean_slip_rates
 from ...problem.masonry.masonry import Masonry
@@ -582,7 +582,7 @@ class Path(NamedTuple):
     def closed_lines(self, pose: Array, collapse: Collapse) -> ClosedLines:
         """What the closed lines of a pose do in a mechanism."""
         moves, lines, velocity = Moves.from_pose(self.masonry, pose), self.masonry.lines, collapse.motion.ravel()
-        closed = gaps_of(lines, moves)[2] <= self.masonry.tolerance
+        closed = moved_lines(lines, moves).gap <= self.masonry.tolerance
         normal = self.rates(moves, lines.normal) @ velocity
         along = np.hypot.reduce([self.rates(moves, tangent) @ velocity for tangent in lines.tangents])
         least = CLOSED_RATE * max(float(np.abs(normal[closed]).max(initial=0.0)), float(np.abs(velocity).max()))
@@ -617,7 +617,9 @@ class Path(NamedTuple):
 
     def closes(self, before: Array, after: Array, closed: ClosedLines) -> bool:
         """Whether a line other than those that stay closed has gone behind its face, farther than it was."""
-        gap, was = (gaps_of(self.masonry.lines, Moves.from_pose(self.masonry, pose))[2] for pose in (after, before))
+        gap, was = (
+            moved_lines(self.masonry.lines, Moves.from_pose(self.masonry, pose)).gap for pose in (after, before)
+        )
         return bool((gap < np.minimum(was, 0.0) - CLOSING_OVERLAP * self.masonry.tolerance)[~closed.still].any())
 
     def projected(self, pose: Array, motion: Array, closed: ClosedLines) -> Array:

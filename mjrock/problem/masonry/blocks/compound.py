@@ -15,7 +15,7 @@ from ....quantities import Array, Flags, frozen, keep, require_flag, require_kin
 from .joints import PARTS_APART, Joint, joints_in_plane
 from .joints_in_space import SpaceJoint, joints_in_space
 from .polygon import COORDINATE, Polygon, checked_name
-from .polyhedron import Polyhedron, principal_of
+from .polyhedron import Polyhedron, PrincipalInertia, principal_of
 from .surface import Surface, surface_in_plane, surface_in_space
 
 MOST_PARTS = 1000
@@ -162,8 +162,8 @@ class Compound:
         return frozen(total)
 
     @cached_property
-    def principal(self) -> tuple[Array, Array]:
-        """In space, principal moments of inertia [kg m2] and their axes, see `principal_of`."""
+    def principal(self) -> PrincipalInertia:
+        """In space, principal moments of inertia and their axes."""
         return principal_of(self.inertia)
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated, Self
+from typing import Annotated, NamedTuple, Self
 
 import numpy as np
 import scipy
@@ -190,8 +190,8 @@ class Polyhedron:
         return frozen(np.trace(second) * np.eye(3) - second)
 
     @cached_property
-    def principal(self) -> tuple[Array, Array]:
-        """Principal moments of inertia [kg m2] and their axes, see `principal_of`."""
+    def principal(self) -> PrincipalInertia:
+        """Principal moments of inertia and their axes."""
         return principal_of(self.inertia)
 
     @property
@@ -200,16 +200,23 @@ class Polyhedron:
         return float(np.linalg.norm(self.corners - self.centroid, axis=1).max())
 
 
-def principal_of(inertia: Array) -> tuple[Array, Array]:
-    """Principal moments of a tensor of inertia [kg m2], shape (3,), and axes, the columns of a right-handed array.
+class PrincipalInertia(NamedTuple):
+    """Principal moments of inertia [kg m2], shape (3,), and their axes, the columns of a right-handed array, (3, 3)."""
+
+    moments: Array
+    axes: Array
+
+
+def principal_of(inertia: Array) -> PrincipalInertia:
+    """Principal moments and axes of a tensor of inertia [kg m2], shape (3, 3).
 
     The axes of the world are kept where they are principal. Otherwise the moments ascend.
     """
     if np.abs(inertia - np.diag(np.diag(inertia))).max() <= DIAGONAL * float(np.trace(inertia)):
-        return np.diag(inertia).copy(), np.eye(3)
+        return PrincipalInertia(np.diag(inertia).copy(), np.eye(3))
     moments, axes = np.linalg.eigh(inertia)
     axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
-    return moments, axes
+    return PrincipalInertia(moments, axes)
 
 
 def checked_hull(vertices: ArrayLike | Sequence[Sequence[float]]) -> tuple[Hull, Vertices]:

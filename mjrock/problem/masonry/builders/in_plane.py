@@ -60,9 +60,10 @@ MOST_BODIES = 25_000
 
 
 def rectangle(
-    left: float, right: float, low: float, high: float, density: float, length: float, fixed: bool, name: str
+    x: tuple[float, float], z: tuple[float, float], density: float, length: float, fixed: bool, name: str
 ) -> Polygon:
     """A rectangular block between two x and two z [m]."""
+    (left, right), (low, high) = x, z
     corners = [(left, low), (right, low), (right, high), (left, high)]
     return Polygon(corners, density=density, length=length, fixed=fixed, name=name)
 
@@ -71,7 +72,7 @@ def ground_under(left: float, right: float, height: float, length: float, level:
     """Fixed ground with its surface at a level [m], under what stands on it between two x, of a height [m]."""
     wide = right - left
     beyond, deep = extent_of_ground(wide, height)
-    return rectangle(left - beyond, right + beyond, level - deep, level, 2000.0, length, True, "ground")
+    return rectangle((left - beyond, right + beyond), (level - deep, level), 2000.0, length, True, "ground")
 
 
 def extent_of_ground(wide: float, height: float) -> tuple[float, float]:
@@ -389,7 +390,7 @@ def running_bond(
             if halved and math.isclose(right - left, long):
                 middle = 0.5 * (left + right)
                 parts = {f"{name}a": (left, middle), f"{name}b": (middle, right)}
-            polygons += [rectangle(*ends, *level, density, thickness, False, part) for part, ends in parts.items()]
+            polygons += [rectangle(ends, level, density, thickness, False, part) for part, ends in parts.items()]
     return polygons
 
 
@@ -398,8 +399,9 @@ def between_beams(units: Sequence[Polygon]) -> list[Polygon]:
     corners = np.concatenate([unit.corners for unit in units])
     (left, low), (right, high) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     deep, beyond, thickness = DEEP_BEAM * (right - left), BEYOND_BEAM * (right - left), units[0].length
-    base = rectangle(left - beyond, right + beyond, low - deep, low, 2000.0, thickness, True, "base")
-    beam = rectangle(left - beyond, right + beyond, high, high + deep, 2000.0, thickness, True, "beam")
+    ends = left - beyond, right + beyond
+    base = rectangle(ends, (low - deep, low), 2000.0, thickness, True, "base")
+    beam = rectangle(ends, (high, high + deep), 2000.0, thickness, True, "beam")
     return [base, *units, beam]
 
 
@@ -466,7 +468,7 @@ def between_floors(
 
     def part(name: str, sides: tuple[float, float], levels: tuple[float, float], density: float = 2000.0) -> Polygon:
         fixed = name not in ("lower", "upper", "floor")
-        return rectangle(*sides, *levels, density, wall.length, fixed, name)
+        return rectangle(sides, levels, density, wall.length, fixed, name)
 
     return [
         part("base", (-2 * thickness, 3 * thickness), (-thickness, 0.0)),

@@ -161,16 +161,25 @@ def spans_in(masonry: Masonry, link: Anchored, poses: Array) -> Array:
     return np.array([math.dist(*_ends(masonry, link, Moves.from_pose(masonry, pose))) for pose in poses])
 
 
-def gaps_of(lines: Lines, moves: Moves) -> tuple[Array, Array, Array]:
-    """Where lines are [m], the normals of the faces, and the gaps [m]."""
+class MovedLines(NamedTuple):
+    """Contact lines in a pose: where they are [m] and the normals of the faces that they meet, shape (m, d) each, and
+    the gaps [m], shape (m,)."""
+
+    at: Array
+    normal: Array
+    gap: Array
+
+
+def moved_lines(lines: Lines, moves: Moves) -> MovedLines:
+    """Contact lines where their blocks have moved."""
     at, normal = moves.at(lines.body, lines.at), moves.turned(lines.face, lines.normal)
-    return at, normal, ((at - moves.at(lines.face, lines.at)) * normal).sum(axis=1)
+    return MovedLines(at, normal, ((at - moves.at(lines.face, lines.at)) * normal).sum(axis=1))
 
 
 def _in_the_plane(masonry: Masonry, moves: Moves) -> Lines:
     """The lines that press. Where one has slid past the end of its face, the corner there meets the other face."""
     lines, slack = masonry.lines, masonry.tolerance
-    at, normal, gap = gaps_of(lines, moves)
+    at, normal, gap = moved_lines(lines, moves)
     faces, own = (_edges(masonry, moves, of, lines.joint) for of in (lines.face, lines.body))
     along, long = _along(faces, at)
     past = (along < -slack) | (along > long + slack)
@@ -203,7 +212,7 @@ def _along(edges: Array, at: Array) -> tuple[Array, Array]:
 
 def _in_space(masonry: Masonry, moves: Moves) -> Lines:
     """The points that press."""
-    at, normal, gap = gaps_of(masonry.lines, moves)
+    at, normal, gap = moved_lines(masonry.lines, moves)
     back = (
         moves.rest[masonry.lines.face]
         + (np.swapaxes(moves.turn[masonry.lines.face], 1, 2) @ (at - moves.place[masonry.lines.face])[..., None])[
