@@ -23,7 +23,7 @@ def tangential(d):
 
 
 def listed(whole, line, first, arms, slip, h=0.0):
-    """Prepare the ways of a line. In a step that is no time bodies turn by nothing."""
+    """Prepare the friction of a line in all its directions. In a step that is no time bodies turn by nothing."""
     normal = NORMAL[len(whole.axes)]
     friction.list_rigid(whole, line, first, tuple(normal), tuple(map(tuple, arms)), tuple(slip), h)
 
