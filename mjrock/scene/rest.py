@@ -39,7 +39,7 @@ FORCE_TOLERANCE = 1e-9
 """Force that may be missing at rest, over the weight of the heaviest body [-]."""
 DISPLACEMENT_ROUNDING = 16 * np.finfo(float).eps
 """Rounding of the displacements of bodies and of the lengths of ties, over these [-]."""
-LEANING = 1e-6
+STIFFNESS_OF_OPEN = 1e-6
 """Stiffness of an open contact in the search for a direction, over that of a closed one [-]."""
 ROTATION_OF_FALLEN, DISPLACEMENT_OF_FALLEN = 0.5, 1e2
 """Rotation [rad], and displacement in radii of inertia, beyond which a body no longer stands."""
@@ -62,7 +62,7 @@ IMPERFECTION = 1e-5
 """Forces on all bodies by which a structure is no longer its own mirror image, over the largest that is missing [-]."""
 PUSH = 1e-2
 """First motion of a push off a pose at which the bodies balance and do not stand, over the deepest penetration [-]."""
-AS_LOW = 1e-3
+ALIKE_ENERGY = 1e-3
 """Difference of energies up to which falls in the two senses of a direction are alike, over the energy that is lost,
 and total momentum of the bodies that counts as none, over the sum of their magnitudes [-]."""
 LITTLE_PROGRESS = 0.5
@@ -74,7 +74,7 @@ RIGID, RIGID_WITHOUT_LIMIT = 1e3, 1e4
 without one. More makes rounding of the slip a larger force than may be missing."""
 SOFT_STARTS = 100.0, 0.01, 0.1
 """Shear stiffnesses, over the normal one, at which the pose is found from which a search starts that finds none from
-the undeformed pose, in turn [-]: stiff springs slip more on the way, as of blocks beside a rough wall."""
+the undeformed pose, in turn [-]: stiff springs slip more from pose to pose, as of blocks beside a rough wall."""
 POSES = 300
 """Most poses of a search."""
 SLIDES, STALLED, PROGRESS = 20, 40, 0.01
@@ -282,7 +282,7 @@ def search_pose(potential: Potential, search: Search, start: Array | None = None
         else:
             loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
         previous = trial.missing_sum
-        springs = np.where(trial.closed, trial.springs, LEANING * trial.springs)
+        springs = np.where(trial.closed, trial.springs, STIFFNESS_OF_OPEN * trial.springs)
         stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.friction, share)
         motion = newton_motion(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
         trial = trial_at(potential, search, lowering_step(potential, trial.pose, motion, trial.sliders))
@@ -486,7 +486,7 @@ def fallen_pose(potential: Potential, trial: Trial, direction: Array) -> Array:
 
     ahead, behind = lowest_along(first), lowest_along(-first)
     lower = energy(ahead) - energy(behind)
-    alike = max(ENERGY_ROUNDING * heaviest(potential), AS_LOW * (energy(0.0) - energy(ahead)))
+    alike = max(ENERGY_ROUNDING * heaviest(potential), ALIKE_ENERGY * (energy(0.0) - energy(ahead)))
     return moved(trial.pose, (ahead if lower < alike else behind) * direction, freedom)
 
 
@@ -497,7 +497,7 @@ def forwards(potential: Potential, direction: Array) -> Array:
     momenta = (masses * direction).reshape(-1, freedom.nv)[:, : freedom.translations]
     total = momenta.sum(axis=0)
     largest = total[np.argmax(np.abs(total))]
-    return -direction if largest < -AS_LOW * np.abs(momenta).sum() else direction
+    return -direction if largest < -ALIKE_ENERGY * np.abs(momenta).sum() else direction
 
 
 def touching(potential: Potential, pose: Array) -> Flags:

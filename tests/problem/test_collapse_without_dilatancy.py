@@ -13,7 +13,7 @@ from mjrock.problem.masonry.limit.limit_state import (
     TURNS,
     LimitProblem,
     Programme,
-    _met,
+    _mechanism_near,
     states_without_dilatancy,
 )
 from mjrock.problem.masonry.limit.statics import Pulls, weight_of
@@ -307,7 +307,7 @@ def test_forces_and_mechanism_take_turns_as_long_as_they_share_less_power(powers
         return SimpleNamespace(status=0, x=np.array([powers[len(asked) - 1], 7.0]))
 
     programme = SimpleNamespace(mechanism=lambda x: (np.ones(1), np.array([len(asked)])), forces=forces)
-    moving = _met(programme, np.ones(1))
+    moving = _mechanism_near(programme, np.ones(1))
     assert len(asked) == turns
     assert (moving is not None) is met
     assert moving is None or moving[1] == turns - 1

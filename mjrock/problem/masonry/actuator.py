@@ -97,8 +97,8 @@ class Actuator(Effect):
     def _require_all(self) -> None:
         """Raise a ValueError unless it is one of all blocks: without a point and without a guide."""
         if self.at is not None or self.guided is not None:
-            name, given = ("at", self.at) if self.at is not None else ("guided", self.guided)
-            raise ValueError(f"{name} of the actuator = {shown(given)} needs a block; block = None drives all blocks")
+            name, value = ("at", self.at) if self.at is not None else ("guided", self.guided)
+            raise ValueError(f"{name} of the actuator = {shown(value)} needs a block; block = None drives all blocks")
 
     @property
     def height(self) -> float:  # type: ignore[override]
@@ -125,10 +125,10 @@ class Actuator(Effect):
 
 def _unit(direction: object, d: int) -> tuple[float, ...]:
     """The unit vector of a direction, along x for a number, in d dimensions."""
-    given = require_reals("direction of the actuator", direction, f"1, -1 or a vector of the shape ({d},)")
-    if given.shape == () and abs(float(given)) == 1:
-        given = float(given) * np.eye(d)[0]
-    vector = require_array("direction of the actuator", given, (d,))
+    components = require_reals("direction of the actuator", direction, f"1, -1 or a vector of the shape ({d},)")
+    if components.shape == () and abs(float(components)) == 1:
+        components = float(components) * np.eye(d)[0]
+    vector = require_array("direction of the actuator", components, (d,))
     length = math.hypot(*vector)
     if not 1e-9 < length < math.inf:
         raise ValueError(f"direction of the actuator = {shown(direction)} has no length; it is above 1e-9 and finite")

@@ -29,7 +29,7 @@ from ..ground.motion import GroundMotion
 from ..wall.case import Case
 from ..wall.effect import Anchored, Effect, require_only
 from ..wall.effects import EFFECT_KINDS, Carrying, Load
-from ..wall.plausibility import IN_G, NEGLIGIBLE_SHARE, Whole, of_effects, of_motion
+from ..wall.plausibility import LARGEST_PEAK_IN_G, NEGLIGIBLE_SHARE, HeldSize, Whole, of_effects, of_motion
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
@@ -51,7 +51,7 @@ from .rest_geometry import MasonryRestGeometry
 
 JUDGED_BLOCKS = 40
 """Most free blocks of which the acceleration that they stand is looked for to judge a record: a second of time."""
-OF_THE_WEIGHT = 3.0
+SPRING_FORCE_OVER_WEIGHT = 3.0
 """Force of an actuator at its full displacement over the weight, up to which its spring may be a force that is given,
 and the displacement no motion [-]."""
 
@@ -60,14 +60,14 @@ def doubts(case: MasonryCase) -> list[str]:
     """What is odd about a case, in words; empty for a plausible one. For a wall see `problem.wall.plausibility`."""
     masonry = case.masonry
     mass = sum(masonry.blocks[i].mass for i in masonry.free)
-    found = of_motion(case.motion, case.duration, "masonry", stood(case))
-    found += of_effects(case.effects, Whole("masonry", "its block", mass), lambda link: _room(masonry, link))
-    return found + [odd for name, jack in case.actuators.items() if (odd := _of_jack(name, jack, masonry, mass))]
+    messages = of_motion(case.motion, case.duration, "masonry", sustained_acceleration(case))
+    messages += of_effects(case.effects, Whole("masonry", "its block", mass), lambda link: _size_along(masonry, link))
+    return messages + [odd for name, jack in case.actuators.items() if (odd := _of_jack(name, jack, masonry, mass))]
 
 
-def stood(case: MasonryCase) -> float:
+def sustained_acceleration(case: MasonryCase) -> float:
     """Acceleration over g that the masonry of a case stands from rest, for a record that may be in g, or infinity."""
-    weak = case.motion is not None and case.motion.peak <= IN_G and len(case.masonry.free) <= JUDGED_BLOCKS
+    weak = case.motion is not None and case.motion.peak <= LARGEST_PEAK_IN_G and len(case.masonry.free) <= JUDGED_BLOCKS
     at_rest = case.velocity is None and case.vertical is None and not case.effects
     return _multiplier(case.masonry) if weak and at_rest else math.inf
 
@@ -81,11 +81,11 @@ def _multiplier(masonry: Masonry) -> float:
         return math.inf
 
 
-def _room(masonry: Masonry, link: Anchored) -> tuple[float, float]:
+def _size_along(masonry: Masonry, link: Anchored) -> HeldSize:
     """Largest extent of the block that a link holds, and of all free blocks along the link [m]."""
     point = np.zeros(2) if link.at is None else point_of_effect(link)
     direction = point - link.anchor_of(point)
-    return 2 * masonry.blocks[link.block].size, _extent(masonry, direction / np.linalg.norm(direction))
+    return HeldSize(2 * masonry.blocks[link.block].size, _extent(masonry, direction / np.linalg.norm(direction)))
 
 
 def _extent(masonry: Masonry, direction: Array) -> float:
@@ -96,7 +96,7 @@ def _extent(masonry: Masonry, direction: Array) -> float:
 def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
     """A doubt about an actuator, empty where there is none."""
     largest, extent = max(map(abs, jack.displacement[1])), _extent(masonry, jack.way)
-    if largest > extent and jack.stiffness * largest > OF_THE_WEIGHT * mass * GRAVITY:
+    if largest > extent and jack.stiffness * largest > SPRING_FORCE_OVER_WEIGHT * mass * GRAVITY:
         return f"{name}: displacement reaches {largest:g} m, and the masonry is {extent:.3g} m long there: is it in mm?"
     if 0 < jack.stiffness * largest < NEGLIGIBLE_SHARE * mass * GRAVITY:
         return (
@@ -110,7 +110,7 @@ FASTEST = 1e3
 """Largest velocity at the release [m/s, rad/s]."""
 REMOVED_BY_GUIDE = 1e-3
 """Largest speed that the guide of an actuator takes from a block at a start, over sqrt(g size) [-]."""
-COMPARED = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports", "settled", "tilt")
+EQUAL_FIELDS = ("masonry", "duration", "motion", "vertical", "transverse", "effects", "supports", "settled", "tilt")
 """What two equal cases share, beside the velocity."""
 
 
@@ -378,13 +378,13 @@ class MasonryCase(Carrying):
     def __eq__(self, other: object) -> bool:
         return (
             isinstance(other, MasonryCase)
-            and all(getattr(self, name) == getattr(other, name) for name in COMPARED)
+            and all(getattr(self, name) == getattr(other, name) for name in EQUAL_FIELDS)
             and (self.velocity is None) == (other.velocity is None)
             and (self.velocity is None or np.array_equal(self.velocity, np.asarray(other.velocity)))
         )
 
     def __hash__(self) -> int:
-        return hash(tuple(getattr(self, name) for name in COMPARED))
+        return hash(tuple(getattr(self, name) for name in EQUAL_FIELDS))
 
 
 AnyCase = Case | MasonryCase

@@ -20,16 +20,16 @@ from .files.bodies import LENGTH_UNITS
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 50.0, 2e-3
 """Sizes beyond which the free blocks of masonry are probably not in m: all of them larger, or all of them smaller."""
-LARGE_BLOCKS, SMALL_BLOCKS, MANY = 5.0, 0.02, 5
+LARGE_BLOCKS, SMALL_BLOCKS, LEAST_COUNT = 5.0, 0.02, 5
 """Sizes that half of the free blocks of masonry exceed, or fall short of, which are probably not in m, where there are
 at least `MANY` [m, m, -]."""
-STANDS = 1.5
+STOREY_HEIGHT = 1.5
 """Height of blocks that stand, and are no wall that lies on its face [m]."""
 USUAL, COMMON_SIZE = (0.04, 3.0), 0.35
 """Sizes of blocks that a unit is named for, and that of which the nearest is named first [m]."""
-NEARLY = 20.0
+DOUBTED_GAP = 20.0
 """Gap over the tolerance up to which faces of a file that have no joint are doubted [-]."""
-LIES, ON_GROUND, ALONG = 0.25, 0.5, 2.0
+LYING_BESIDE, SHARE_ON_GROUND, AREA_ACROSS = 0.25, 0.5, 2.0
 """Free blocks of a file lie along y from fixed ones by this share of the extent, and half of them lie on the ground
 while joints across y have twice the area of all others, where y may be the axis that points upwards [-]."""
 FINE_TOLERANCE = 1e-5
@@ -69,13 +69,13 @@ def odd_frequency(xi: float, frequency: float, lowest: float) -> str:
 
     With the lowest one it makes of xi the damping ratio of that mode, which says whether c/k is odd.
     """
-    found, c_over_k = xi * lowest / frequency, 2 * xi / frequency
-    overdamped = found > OVERDAMPED and lowest > FAR_BELOW_LOWEST * frequency
-    if not (overdamped or (0 < found < UNDAMPED and xi > 100 * UNDAMPED)):
+    ratio, c_over_k = xi * lowest / frequency, 2 * xi / frequency
+    overdamped = ratio > OVERDAMPED and lowest > FAR_BELOW_LOWEST * frequency
+    if not (overdamped or (0 < ratio < UNDAMPED and xi > 100 * UNDAMPED)):
         return ""
     return (
         f"frequency = {frequency:g} rad/s, and the lowest one of this masonry is {lowest:.3g} rad/s: with xi = "
-        f"{xi:g} that one is damped to {found:.3g} times critical, c/k = {c_over_k:.2g} s; frequencies are in "
+        f"{xi:g} that one is damped to {ratio:.3g} times critical, c/k = {c_over_k:.2g} s; frequencies are in "
         "rad/s, and None takes the lowest"
     )
 
@@ -88,17 +88,17 @@ def odd_sizes(sizes: Mapping[str, float]) -> str:
     median = sizes[ordered[len(ordered) // 2]]
     if sizes[ordered[0]] > LARGEST_BLOCK:
         name = ordered[0]
-    elif sizes[ordered[-1]] < SMALLEST_BLOCK or (len(sizes) >= MANY and median < SMALL_BLOCKS):
+    elif sizes[ordered[-1]] < SMALLEST_BLOCK or (len(sizes) >= LEAST_COUNT and median < SMALL_BLOCKS):
         name = ordered[len(ordered) // 2]
         return f"{name} is {sizes[name]:.4g} m across: is the unit too small? A file takes unit='m'"
-    elif len(sizes) >= MANY and median > LARGE_BLOCKS:
+    elif len(sizes) >= LEAST_COUNT and median > LARGE_BLOCKS:
         name = ordered[len(ordered) // 2]
     else:
         return ""
-    found = {unit: sizes[name] * scale for unit, scale in LENGTH_UNITS.items()}
-    likely = [unit for unit, size in found.items() if unit != "m" and USUAL[0] <= size <= USUAL[1]] or ["mm"]
-    likely.sort(key=lambda unit: abs(math.log(found[unit] / COMMON_SIZE)))
-    units = " or ".join(f"{unit}, {found[unit]:.2g} m" for unit in likely)
+    size_in_unit = {unit: sizes[name] * scale for unit, scale in LENGTH_UNITS.items()}
+    likely = [unit for unit, size in size_in_unit.items() if unit != "m" and USUAL[0] <= size <= USUAL[1]] or ["mm"]
+    likely.sort(key=lambda unit: abs(math.log(size_in_unit[unit] / COMMON_SIZE)))
+    units = " or ".join(f"{unit}, {size_in_unit[unit]:.2g} m" for unit in likely)
     return (
         f"{name} is {sizes[name]:.4g} m across; vertices are in m: are they in {units}? A file takes unit={likely[0]!r}"
     )
@@ -128,25 +128,29 @@ def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: b
     on it and are stacked sideways, as a wall that has been laid on its face. Walls as high as a storey stand there.
     """
     free = [i for i, block in enumerate(blocks) if not block.fixed]
-    held = [i for i, block in enumerate(blocks) if block.fixed]
+    fixed = [i for i, block in enumerate(blocks) if block.fixed]
     extent = np.ptp(np.concatenate([blocks[i].corners for i in free]), axis=0)
     text = "z points upwards: does {0} in this file? up={0!r} turns it, and up='z' keeps z"
     if not ground:
         centroids = np.array([block.centroid for block in blocks])
-        beyond = (centroids[free].mean(axis=0) - centroids[held].mean(axis=0)) / extent.max()
+        beyond = (centroids[free].mean(axis=0) - centroids[fixed].mean(axis=0)) / extent.max()
         axis = 0 if beyond[0] > beyond[1] else 1
-        if beyond[axis] > LIES and beyond[2] < 0.1 * beyond[axis]:
+        if beyond[axis] > LYING_BESIDE and beyond[2] < 0.1 * beyond[axis]:
             return f"the free blocks lie along {'xy'[axis]} from the fixed ones and not above them; " + text.format(
                 "xy"[axis]
             )
         return ""
-    if STANDS <= np.median([np.ptp(blocks[i].corners[:, 2]) for i in free]) <= LARGE_BLOCKS:
+    if STOREY_HEIGHT <= np.median([np.ptp(blocks[i].corners[:, 2]) for i in free]) <= LARGE_BLOCKS:
         return ""
-    inner = [joint for joint in joints if joint.below not in held]
+    inner = [joint for joint in joints if joint.below not in fixed]
     areas = sum((joint.area * np.abs(joint.normal) for joint in inner), np.zeros(3))
-    lying = len({joint.above for joint in joints if joint.below in held})
+    lying = len({joint.above for joint in joints if joint.below in fixed})
     axis = 0 if areas[0] > areas[1] else 1
-    if len(inner) > 1 and lying >= ON_GROUND * len(free) and areas[axis] > ALONG * (areas.sum() - areas[axis]):
+    if (
+        len(inner) > 1
+        and lying >= SHARE_ON_GROUND * len(free)
+        and areas[axis] > AREA_ACROSS * (areas.sum() - areas[axis])
+    ):
         return f"{lying} of {len(free)} blocks lie on the ground, side by side along {'xy'[axis]}; " + text.format(
             "xy"[axis]
         )
@@ -181,7 +185,7 @@ def not_joined(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint],
     return pairs[[tuple(pair) not in joined for pair in pairs.tolist()]]
 
 
-def nearly(names: Sequence[str], gap: float, tolerance: float) -> str:
+def nearly_joined(names: Sequence[str], gap: float, tolerance: float) -> str:
     """What is odd about joints of a file that only another gap finds [m], in words, empty where none are."""
     if not names:
         return ""
@@ -259,13 +263,13 @@ def smallest_gap(
     return f"{text}; gap = {needed:.2g} m joins all of them: it finds {len(joints_within(needed))} joints"
 
 
-def needed_gap(loose: Sequence[int], joints_within: JointFinder, given: float) -> float | None:
+def needed_gap(loose: Sequence[int], joints_within: JointFinder, reach: float) -> float | None:
     """A gap of two digits with which blocks have a joint each [m], near the least one; None where none has."""
 
     def joins(gap: float) -> bool:
         return set(loose) <= {i for joint in joints_within(gap) for i in (joint.below, joint.above)}
 
-    low = high = given
+    low = high = reach
     while not joins(high):
         if high >= WIDEST_TOLERANCE:
             return None
@@ -280,8 +284,8 @@ def needed_gap(loose: Sequence[int], joints_within: JointFinder, given: float) -
 def split_faces(joints: Sequence[Joint | SpaceJoint], blocks: Sequence[AnyBlock], names: Sequence[str]) -> str:
     """What is odd about the joints of blocks in space, in words, empty where nothing is.
 
-    Two convex blocks have one face each that points at the other in one way. Two joints of theirs with nearly the same
-    normal are parts of a face that vertices off its plane have split.
+    Two convex blocks have at most one face each that points at the other with one normal. Two joints of theirs with
+    nearly the same normal are parts of a face that vertices off its plane have split.
     """
     normals = defaultdict(list)
     for joint in joints:

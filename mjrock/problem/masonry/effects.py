@@ -144,9 +144,9 @@ def require_placed(name: str, effect: Effect, masonry: Masonry) -> None:
             f"{name}, height = {effect.height:g} m is for masonry in the plane; in space give at=(x, y, z)"
         )
     for field in ("at", "anchor"):
-        given = getattr(effect, field, None)
-        if given is not None and len(given) != d:
-            raise ValueError(f"{name}, {field} = {given} m has {len(given)} numbers; this masonry takes {letters}")
+        place = getattr(effect, field, None)
+        if place is not None and len(place) != d:
+            raise ValueError(f"{name}, {field} = {place} m has {len(place)} numbers; this masonry takes {letters}")
     if effect.offset:
         raise ValueError(f"{name}, offset = {effect.offset:g} m goes with a height; at has it")
     if effect.on_block:

@@ -53,7 +53,7 @@ def history_of(name: str, given: object, largest: float, unit: str, *, from_zero
     Args:
         name: what it is called.
         given: times and values, as many.
-        largest: of the values, either way.
+        largest: magnitude of the values.
         unit: of the values.
         from_zero: whether the first value has to be zero.
 

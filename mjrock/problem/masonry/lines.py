@@ -208,7 +208,7 @@ def lowest_frequency(
     Joints without friction slide. Motions that no joint resists, such as the fall of a loose block, do not count. The
     weight's own part of the stiffness is left out, as in `reference_frequency`, which is the case of one block.
 
-    Inclined faces may leave no motion in which none of them slides, as those of a wedge do. There joints give way along
+    Inclined faces may leave no motion in which none of them slides, as those of a wedge do. There joints deform along
     their faces by their springs `along` [N/m], shape (m,), and slide where these are infinite.
     """
     masses, axes = masses_of(blocks)

@@ -40,11 +40,11 @@ from .builders.in_plane import MOST_BODIES, ground_below_all, stack
 from .builders.in_space import ground_below
 from .constructors import Constructors
 from .drawing import (
+    DOUBTED_GAP,
     FINE_TOLERANCE,
-    NEARLY,
     WIDEST_TOLERANCE,
     along_lines,
-    nearly,
+    nearly_joined,
     not_joined,
     odd_axis,
     odd_damping,
@@ -127,10 +127,10 @@ class Masonry(Constructors, NotebookPicture):
             put a contact point on each corner of the joint, and more divide a joint of four corners into (points - 1)^2
             cells with a point on each of their corners, and other joints alike. Each point has the stiffness of its
             tributary area. A closed joint of n lines is 1 + 2 / (n - 1)^2 times as stiff in bending as k_n I: 3 times
-            with 2, 1.5 with 3, 1.031 with 9. In space this holds for a rectangle both ways; a triangle on its corners
-            is 4 times as stiff. A joint with a bond takes 3 or more, and shares its area out to them so that it is as
-            stiff as k_n I. A joint that has slid keeps its lines and k_n, on the part of its faces that still lies over
-            each other.
+            with 2, 1.5 with 3, 1.031 with 9. In space this holds for a rectangle about both axes; a triangle on its
+            corners is 4 times as stiff. A joint with a bond takes 3 or more, and shares its area out to them so that it
+            is as stiff as k_n I. A joint that has slid keeps its lines and k_n, on the part of its faces that still
+            lies over each other.
         tolerance: largest distance between edges or faces that touch, and largest overlap of blocks [m], 1e-9 to 0.1. A
             joint is wider than ten times that. It lies halfway between the edges, and is closed and unloaded as drawn.
         gap: thickness of the mortar of brickwork that is drawn with its joints [m], 1e-9 to 0.1. Edges or faces are
@@ -220,8 +220,8 @@ class Masonry(Constructors, NotebookPicture):
     def __repr__(self) -> str:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
         size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
-        left = {"k_s": np.isinf(self.joint_shear).all(), "xi": self.law is not None}
-        names = (name for name in ("k_n", "k_s", "friction", "xi", "points") if not left.get(name))
+        omitted = {"k_s": np.isinf(self.joint_shear).all(), "xi": self.law is not None}
+        names = (name for name in ("k_n", "k_s", "friction", "xi", "points") if not omitted.get(name))
         given = ((name, getattr(self, name)) for name in names)
         parts = [f"{name} of the joint" if callable(value) else f"{name} = {value:g}" for name, value in given]
         if self.law is not None:
@@ -329,17 +329,17 @@ class Masonry(Constructors, NotebookPicture):
     def without_functions(self) -> Self:
         """The same with the values of its joints by their names in the place of functions of the joint, which no file
         can hold. What a file can hold is left as it is, and so is `pairs`."""
-        given = {name: getattr(self, name) for name in PROPERTIES}
-        held: dict[str, ByName | None] = {
-            name: self._by_name(map(value, self.joints)) for name, value in given.items() if has_function(value)
+        properties = {name: getattr(self, name) for name in PROPERTIES}
+        by_name: dict[str, ByName | None] = {
+            name: self._by_name(map(value, self.joints)) for name, value in properties.items() if has_function(value)
         }
         if has_function(self.law):
-            known = {name: self._by_name(getattr(self.table, name).tolist()) for name in ("xi", "frequency")}
-            held |= {"law": None, **known}
-        if not held:
+            damping = {name: self._by_name(getattr(self.table, name).tolist()) for name in ("xi", "frequency")}
+            by_name |= {"law": None, **damping}
+        if not by_name:
             return self
         same = object.__new__(type(self))
-        keep(same, **{each.name: getattr(self, each.name) for each in fields(self)} | held)
+        keep(same, **{each.name: getattr(self, each.name) for each in fields(self)} | by_name)
         return same
 
     def _by_name(self, values: Iterable[Any]) -> ByName:
@@ -410,15 +410,15 @@ class Masonry(Constructors, NotebookPicture):
     def _doubts(self) -> list[str]:
         """What is odd about it, in words, empty where nothing is. Its table is made, and so checked, for that."""
         xi, frequency = self.table.xi, self.table.frequency
-        own, odd = np.isnan(frequency), ""
+        own, frequency_doubt = np.isnan(frequency), ""
         if self.law is None and not own.all():
             i = int(np.where(own, -1.0, xi / frequency).argmax())
             lowest = self._lowest_frequency if xi[i] else 0.0
-            odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
+            frequency_doubt = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
         sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
-        alone = f"without a joint {touches_text(touches, self.names)}" if touches else ""
-        return [doubt for doubt in (odd, odd_damping(xi[own]), sizes, faces, alone) if doubt]
+        touches_doubt = f"without a joint {touches_text(touches, self.names)}" if touches else ""
+        return [doubt for doubt in (frequency_doubt, odd_damping(xi[own]), sizes, faces, touches_doubt) if doubt]
 
     @classmethod
     def stack(
@@ -447,20 +447,20 @@ class Masonry(Constructors, NotebookPicture):
         Raises:
             ValueError: for a value outside its range, or as `Masonry` does.
         """
-        made = stack(blocks, ground, side_stop)
+        polygons = stack(blocks, ground, side_stop)
         given = one_by_one({**options, "k_n": k_n})
         if not side_stop:
             if k_side is not None or side_friction:
                 raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
-            return cls(made, **given)
+            return cls(polygons, **given)
         frequency = given["frequency"]
         if given.get("law") is None and (frequency is None or callable(frequency)):
-            bare = cls(made[:-1], **given)
+            bare = cls(polygons[:-1], **given)
             lowest = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
             given["frequency"] = OrElse(frequency, lowest) if callable(frequency) else lowest
         given["k_n"] = ByKind(given["k_n"], k_side or given["k_n"])
         given["friction"] = ByKind(given["friction"], side_friction)
-        return cls(made, **given)
+        return cls(polygons, **given)
 
     @classmethod
     def from_dxf(
@@ -580,13 +580,13 @@ class Masonry(Constructors, NotebookPicture):
                 f"{named([self.names[i] for i in loose])} touch no other block within {self._reach_text}; "
                 f"{smallest_gap(self.blocks, self.names, loose, self._joints_within, self.reach)}"
             )
-        wider = min(NEARLY * self.tolerance, WIDEST_TOLERANCE)
+        wider = min(DOUBTED_GAP * self.tolerance, WIDEST_TOLERANCE)
         tries = [(wider, wider)] + ([(FINE_TOLERANCE, self.reach)] if self.tolerance > FINE_TOLERANCE else [])
         for tolerance, gap in tries:
             unjoined = not_joined(self.blocks, self.joints, gap)
             with suppress(OverlapError):
-                found = self._joints_with(tolerance, gap, unjoined)
-                if odd := nearly([joint.name for joint in found], gap, self.tolerance):
+                nearly = self._joints_with(tolerance, gap, unjoined)
+                if odd := nearly_joined([joint.name for joint in nearly], gap, self.tolerance):
                     warn_of(odd, Implausible)
         return self
 

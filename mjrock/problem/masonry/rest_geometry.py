@@ -78,7 +78,7 @@ def _edge(side: Side, joint: Joint, sense: float) -> Face:
 def travels(faces: tuple[Face, Face], directions: Array) -> Array:
     """How far the face above can slide along unit vectors until it has left the face below [m], shape (n,).
 
-    The two faces then touch along a line square to the way at most.
+    The two faces then touch at most along a line perpendicular to that direction.
     """
     below, above = faces
     return np.asarray((below.corners @ directions.T).max(axis=0) - (above.corners @ directions.T).min(axis=0))

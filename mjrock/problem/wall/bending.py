@@ -197,16 +197,16 @@ class VerticalBending:
 
     def _rates(self, crack: float) -> tuple[Weights, Array, Array]:
         """The weights, and how fast they begin to move outwards and upwards over the rotation of the lower body [m]."""
-        found, at = self.weights(crack), self.hinges(crack)
-        h, above = at.top[1], found.z > crack
+        weights, at = self.weights(crack), self.hinges(crack)
+        h, above = at.top[1], weights.z > crack
         ratio = crack / (h - crack)
-        sway = np.where(above, ratio * (h - found.z), found.z)
-        return found, sway, np.where(above, at.edge - at.x + ratio * (found.x - at.x), at.edge - found.x)
+        sway = np.where(above, ratio * (h - weights.z), weights.z)
+        return weights, sway, np.where(above, at.edge - at.x + ratio * (weights.x - at.x), at.edge - weights.x)
 
     def _starts(self, crack: float) -> float:
         """The multiplier of a crack at a height [m]."""
-        found, sway, rise = self._rates(crack)
-        return float(found.weight @ rise / (found.inertia @ sway))
+        weights, sway, rise = self._rates(crack)
+        return float(weights.weight @ rise / (weights.inertia @ sway))
 
     @cached_property
     def crack_height(self) -> float:
@@ -221,11 +221,11 @@ class VerticalBending:
         steps = [effect.height for effect in self.effects] + [z for z, _ in self.wall.profile or ()]
         ends = [low, *sorted({z for z in steps if low < z < high}), high]
         options = {"xatol": 1e-9 * height}
-        found = [
+        minima = [
             scipy.optimize.minimize_scalar(self._starts, bounds=stretch, method="bounded", options=options)
             for stretch in pairwise(ends)
         ]
-        return float(min(found, key=lambda one: float(one.fun)).x)
+        return float(min(minima, key=lambda minimum: float(minimum.fun)).x)
 
     @property
     def multiplier(self) -> float:
@@ -236,8 +236,8 @@ class VerticalBending:
     def participation(self) -> float:
         """e*, the share of the mass that takes part [-], C8.7.1.5; 1 of one thickness without masses, where both bodies
         move alike."""
-        found, sway, _ = self._rates(self.crack_height)
-        return min(float((found.inertia @ sway) ** 2 / (found.inertia.sum() * (found.inertia @ sway**2))), 1.0)
+        weights, sway, _ = self._rates(self.crack_height)
+        return min(float((weights.inertia @ sway) ** 2 / (weights.inertia.sum() * (weights.inertia @ sway**2))), 1.0)
 
     @cached_property
     def curve(self) -> BendingCurve:
@@ -256,9 +256,9 @@ class VerticalBending:
         sine, cosine, sine_up, cosine_up = np.sin(theta), np.cos(theta), np.sin(psi), np.cos(psi)
         across, up = t * sine + z * cosine, t * cosine - z * sine  # rates of the inner edge of the crack
         rate = across / (above * cosine_up + a * sine_up)  # of psi
-        found = self.weights(z)
+        weights = self.weights(z)
         rise, sway, moved = (np.zeros_like(theta) for _ in range(3))
-        for weight, inertia, px, pz in zip(*found, strict=True):
+        for weight, inertia, px, pz in zip(*weights, strict=True):
             if pz > z:
                 beside, high = px - at.x, pz - z
                 moves = x + beside * (cosine_up - 1) - high * sine_up
@@ -269,7 +269,7 @@ class VerticalBending:
                 moves = beside * (1 - cosine) + pz * sine
                 outwards, upwards = beside * sine + pz * cosine, beside * cosine - pz * sine
             rise, sway, moved = rise + weight * upwards, sway + inertia * outwards, moved + inertia * moves
-        multiplier, moved = rise / sway, moved / found.inertia.sum()
+        multiplier, moved = rise / sway, moved / weights.inertia.sum()
         end = int(np.flatnonzero(multiplier <= 0)[0])
         part = multiplier[end - 1] / (multiplier[end - 1] - multiplier[end])
         last = [row[end - 1] + part * (row[end] - row[end - 1]) for row in (theta, moved)]

@@ -231,7 +231,7 @@ class Case(Carrying):
 
     @cached_property
     def resisting(self) -> tuple[TiePull, ...]:
-        """All that resists a push outwards with a spring: ties, which bring the wall back, and what slips both ways."""
+        """All springs that resist a push outwards: ties, which bring the wall back, and what slips in either sense."""
         return tuple(TiePull.from_tie(tie, self.block) for tie in self.springs.values())
 
     def limits_of_ties(self, rotations: Array) -> tuple[dict[str, float], dict[str, float]]:

@@ -36,7 +36,7 @@ from .tie import Tie
 class Damper(Anchored):
     """A linear viscous damper that runs horizontally from the inner face to an anchor behind the wall.
 
-    It resists both ways with c times the rate of its length. A wall at rest does not feel it.
+    It resists in both directions with c times the rate of its length. A wall at rest does not feel it.
 
     Args:
         height: where it holds the wall [m], 0 to 200.
@@ -119,7 +119,7 @@ class FrictionDamper(Anchored):
 
     @property
     def law(self) -> LinkLaw:
-        """A spring that yields both ways."""
+        """A spring that yields in both directions."""
         return LinkLaw(self.stiffness, self.span, self.slip_force, push=self.slip_force)
 
     @property
@@ -285,11 +285,11 @@ def required_effects(name: str, values: Any, kinds: tuple[type[Kind], ...], take
     Raises:
         TypeError: for any other, with their name and the kinds that they may have.
     """
-    given = (values,) if isinstance(values, kinds) else values
-    require_sequence(name, given, takes or f"a sequence of {named([kind.__name__ for kind in kinds])}")
-    for i, one in enumerate(given):
-        require_kind(f"{name}[{i}]", one, *kinds)
-    return tuple(given)
+    effects = (values,) if isinstance(values, kinds) else values
+    require_sequence(name, effects, takes or f"a sequence of {named([kind.__name__ for kind in kinds])}")
+    for i, effect in enumerate(effects):
+        require_kind(f"{name}[{i}]", effect, *kinds)
+    return tuple(effects)
 
 
 def named_effects(effects: Sequence[Effect]) -> dict[str, Effect]:

@@ -73,7 +73,7 @@ class AppliedLink(AppliedLaw):
 
     Args:
         law: the law.
-        stroke: largest elongation either way for which it is checked, and for which steps are stable [m].
+        stroke: largest elongation or shortening for which it is checked, and for which steps are stable [m].
     """
 
     law: OwnLinkLaw
@@ -135,8 +135,8 @@ class Link(Anchored):
         height: where it holds the wall [m], 0 to 200.
         own: its law, see `link_law`: the force by how much longer it is than as drawn, and the rate of that.
         length: distance from the inner face to the anchor [m], 0.01 to 1000.
-        stroke: largest elongation either way that is foreseen [m], 1e-6 to 100. The law is checked and the default step
-            is stable up to there.
+        stroke: largest elongation or shortening that is foreseen [m], 1e-6 to 100. The law is checked and the default
+            step is stable up to there.
         block: the block that it holds.
         at: of masonry, the point that it holds, x, z or x, y, z at rest [m]; it takes the place of the height.
         anchor: of masonry, its other end at rest [m]. None is `length` behind the point.

@@ -26,13 +26,13 @@ STIFFEST = 1e10
 """Stiffness above which that of a tie is taken for a modulus [N/m]; a steel bar of 100 mm and 1 m has 1.6e9."""
 CUT_OFF = 0.2
 """Share of the Arias intensity of a record that a run may leave out [-]."""
-IN_G = 1.0
+LARGEST_PEAK_IN_G = 1.0
 """Peak up to which a record may be one in g that was read as m/s2 [m/s2]."""
 FAINT_RECORD = 0.6
 """Peak of a record over the acceleration at which the wall starts to rock, up to which it is odd to run it [-]."""
 RELEASE_BEYOND = 1.1
 """Rotation of release over that which overturns the wall, up to which it may be a study of the limit [-]."""
-TOO_FAST = 3.0
+RELEASE_SPEED_BEYOND = 3.0
 """The same of the velocity of release [-]."""
 
 LOW_TIE = 0.6
@@ -91,7 +91,7 @@ def _of_release(case: Any) -> list[str]:
     moment = case.restoring.towards(case.direction)
     if case.released_outwards and not case.pulls and moment.alpha > 0:
         most = float(moment.energy(moment.alpha))
-        if case.release_energy > TOO_FAST**2 * most:
+        if case.release_energy > RELEASE_SPEED_BEYOND**2 * most:
             speed = abs(case.omega0) / math.sqrt(case.release_energy / most)
             return [
                 f"omega0 = {case.omega0:g} rad/s: {speed:.3g} rad/s overturn the wall already; velocities are in rad/s"
@@ -115,29 +115,29 @@ def of_motion(motion: GroundMotion | None, duration: float, label: str, start: f
     """
     if motion is None:
         return []
-    found, peak = [], motion.peak / GRAVITY
-    if 0 < peak < FAINT_RECORD * start and start <= motion.peak <= IN_G:
-        found.append(
+    messages, peak = [], motion.peak / GRAVITY
+    if 0 < peak < FAINT_RECORD * start and start <= motion.peak <= LARGEST_PEAK_IN_G:
+        messages.append(
             f"the record peaks at {peak:.3g} g; this {label} starts to rock at {start:.3g} g: is the record in g? "
             "Accelerations are in m/s2"
         )
     if duration < motion.duration:
-        total, kept = motion.arias_intensity, float(np.interp(duration, motion.times, motion.arias_intensities))
-        if kept < (1 - CUT_OFF) * total:
-            found.append(
+        total, within_run = motion.arias_intensity, float(np.interp(duration, motion.times, motion.arias_intensities))
+        if within_run < (1 - CUT_OFF) * total:
+            messages.append(
                 f"the run of {duration:g} s ends before the record of {motion.duration:g} s, and leaves out "
-                f"{percent_text(1 - kept / total)} of its Arias intensity"
+                f"{percent_text(1 - within_run / total)} of its Arias intensity"
             )
-    return found
+    return messages
 
 
 def _of_effects(case: Any) -> list[str]:
-    def room(link: Anchored) -> tuple[float, float]:
+    def size_of(link: Anchored) -> HeldSize:
         b, opening = case.block.b, max(case.restoring.outer.alpha, case.wall.alpha)
         pull = TiePull.from_tie(link, case.block)._replace(reach=link.span)
-        return 2 * b, float(pulled(pull, opening, 1.0)[0])
+        return HeldSize(2 * b, float(pulled(pull, opening, 1.0)[0]))
 
-    return of_effects(case.effects, Whole("wall", "the wall", case.block.mass, LEAST_OF_WALL), room)
+    return of_effects(case.effects, Whole("wall", "the wall", case.block.mass, LEAST_OF_WALL), size_of)
 
 
 class Whole(NamedTuple):
@@ -156,28 +156,35 @@ class Whole(NamedTuple):
     least: float = NEGLIGIBLE_SHARE
 
 
-Room = Callable[[Anchored], tuple[float, float]]
-"""How thick the thing is that a link holds, and how far it opens there until it overturns [m]."""
+class HeldSize(NamedTuple):
+    """How thick the wall or block is that a link holds, and how far it opens there until it overturns [m]."""
+
+    thickness: float
+    opening: float
 
 
-def of_effects(effects: Sequence[Effect], whole: Whole, room: Room) -> list[str]:
+HeldBy = Callable[[Anchored], HeldSize]
+"""The size of what a link holds."""
+
+
+def of_effects(effects: Sequence[Effect], whole: Whole, held: HeldBy) -> list[str]:
     """What is odd about effects."""
-    found = []
+    messages = []
     weight = whole.mass * GRAVITY
     for i, effect in enumerate(effects):
         name = f"effects[{i}], {type(effect).__name__}"
         if isinstance(effect, Thrust | Load):
             if 0 < abs(effect.force) < whole.least * weight:
-                found.append(_against_weight(name, "force", effect.force, whole, "kN"))
+                messages.append(_against_weight(name, "force", effect.force, whole, "kN"))
             elif abs(effect.force) > EXCESSIVE * weight:
-                found.append(_against_weight(name, "force", effect.force, whole, "N"))
+                messages.append(_against_weight(name, "force", effect.force, whole, "N"))
         elif isinstance(effect, AddedMass) and 0 < effect.mass < whole.least * whole.mass:
-            found.append(
+            messages.append(
                 f"{name}: mass = {effect.mass:g} kg, that of the {whole.label} {whole.mass:.3g} kg: is it in t?"
             )
         elif isinstance(effect, Anchored):
-            found += filter(None, (of(name, effect, whole, room) for of in (_of_dashpot, _of_spring)))
-    return found
+            messages += filter(None, (of(name, effect, whole, held) for of in (_of_dashpot, _of_spring)))
+    return messages
 
 
 def _of_free_part(case: Any) -> list[str]:
@@ -199,7 +206,7 @@ def _of_free_part(case: Any) -> list[str]:
     ]
 
 
-def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
+def _of_spring(name: str, link: Anchored, whole: Whole, held: HeldBy) -> str:
     """At most one doubt about the spring of a link and its limits, empty where there is none."""
     law, limit, weight = link.law, link.limit, whole.mass * GRAVITY
     if not law.k > 0:
@@ -208,7 +215,7 @@ def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
         return _against_weight(name, limit, law.strength, whole, "kN")
     if law.k > STIFFEST:
         return f"{name}: stiffness = {law.k:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"
-    thickness, opens = room(link)
+    thickness, opens = held(link)
     if math.isfinite(law.strength) and law.strength / law.k > thickness:
         return (
             f"{name} yields at an elongation of {law.strength / law.k:.3g} m, and {whole.part} is {thickness:g} m "
@@ -216,18 +223,18 @@ def _of_spring(name: str, link: Anchored, whole: Whole, room: Room) -> str:
         )
     if math.isfinite(law.strength) and law.strength > EXCESSIVE * weight:
         return _against_weight(name, limit, law.strength, whole, "N, and no stress in Pa")
-    for what, length in (("slack", law.reach - link.span), ("ultimate", law.ultimate)):
+    for argument, length in (("slack", law.reach - link.span), ("ultimate", law.ultimate)):
         if math.inf > length > opens > 0:
             return (
-                f"{name}: {what} = {length:g} m, and where it is held the {whole.label} opens by {opens:.3g} m until "
-                f"it overturns: is the {what} in m?"
+                f"{name}: {argument} = {length:g} m, and where it is held the {whole.label} opens by {opens:.3g} m "
+                f"until it overturns: is the {argument} in m?"
             )
     return ""
 
 
-def _of_dashpot(name: str, link: Anchored, whole: Whole, room: Room) -> str:
+def _of_dashpot(name: str, link: Anchored, whole: Whole, held: HeldBy) -> str:
     """A doubt about the dashpot of a link, by its force at the speed sqrt(g t) of a wall of thickness t that falls."""
-    speed, weight = math.sqrt(GRAVITY * room(link)[0]), whole.mass * GRAVITY
+    speed, weight = math.sqrt(GRAVITY * held(link).thickness), whole.mass * GRAVITY
     force = resistance(link.law, speed)
     if not force > 0 or NEGLIGIBLE_SHARE * weight <= force <= EXCESSIVE * weight:
         return ""
@@ -240,5 +247,5 @@ def _of_dashpot(name: str, link: Anchored, whole: Whole, room: Room) -> str:
     )
 
 
-def _against_weight(name: str, what: str, value: float, whole: Whole, unit: str) -> str:
-    return f"{name}: {what} = {value:g} N, and the {whole.label} weighs {whole.mass * GRAVITY:.3g} N: is it in {unit}?"
+def _against_weight(name: str, field: str, value: float, whole: Whole, unit: str) -> str:
+    return f"{name}: {field} = {value:g} N, and the {whole.label} weighs {whole.mass * GRAVITY:.3g} N: is it in {unit}?"

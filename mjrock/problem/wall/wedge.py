@@ -236,8 +236,8 @@ class Corner:
     @cached_property
     def case(self) -> Case:
         """The wall that stands for it, with its effects and masses."""
-        given = (bisecting(one) if isinstance(one, Tie) else one for one in self.effects)
-        return Case(self.block, effects=(*given, *self.masses))
+        effects = (bisecting(effect) if isinstance(effect, Tie) else effect for effect in self.effects)
+        return Case(self.block, effects=(*effects, *self.masses))
 
     @property
     def block(self) -> Block:
@@ -251,11 +251,11 @@ class Corner:
         any."""
         t, p, h = self.thickness, self.depth, self.height
         post, half = self.density * t * t * h, 0.5 * math.sqrt(2) * t
-        found = [AddedMass(0.25 * post, 0.5 * h, sign * h / math.sqrt(12)) for sign in (-1, 1)]
+        masses = [AddedMass(0.25 * post, 0.5 * h, sign * h / math.sqrt(12)) for sign in (-1, 1)]
         if self.angle < LEAST_ANGLE:
-            return tuple(found)
+            return tuple(masses)
         wedge = Wedge(self.angle, t, h, density=self.density)
         middle = half - (1.5 * t + p / 3) / math.sqrt(2)
         radius = math.sqrt(t**2 / 24 + p**2 / 36 + h**2 / 18)
         corners = [(-half, 0.0), (-half, h), (-half - p / math.sqrt(2), h)]
-        return *found, *wedge.masses(self.density * t * p * h, 2 * h / 3, middle, radius, corners)
+        return *masses, *wedge.masses(self.density * t * p * h, 2 * h / 3, middle, radius, corners)

@@ -19,7 +19,7 @@ from ...problem.masonry.case import MasonryCase
 from ...problem.masonry.effects import applied, inertia_of_added_masses, pulls_of
 from ...problem.masonry.limit.collapse import Collapse, LimitLoads, UnbalancedError, limit_of, pushed
 from ...problem.masonry.limit.pose import Moves, moved_lines, posed, spans_in
-from ...problem.masonry.limit.statics import MOVES, Pulls, falling
+from ...problem.masonry.limit.statics import MOVING_VELOCITY, Pulls, falling
 from ...problem.masonry.lines import free_numbers, mean_slip_rates
 from ...problem.masonry.masonry import Masonry
 from ...problem.wall.case import Case
@@ -315,7 +315,7 @@ def _twisting(collapse: Collapse, loads: LimitLoads, ties: Pulls) -> tuple[str, 
     count, lines = len(masonry.joints), masonry.lines
     rates = np.abs(mean_slip_rates(masonry.blocks, lines, count) @ collapse.motion.ravel()).reshape(3, count)
     widths = np.array([joint.width for joint in masonry.joints])
-    twists = (forces.normal > 0) & (masonry.joint_friction > 0) & (rates[2] * widths > MOVES * rates.max())
+    twists = (forces.normal > 0) & (masonry.joint_friction > 0) & (rates[2] * widths > MOVING_VELOCITY * rates.max())
     return tuple(joint.name for joint, twisted in zip(masonry.joints, twists, strict=True) if twisted)
 
 

@@ -74,7 +74,7 @@ class Joint:
     Args:
         below, above: numbers of the two blocks. The normal points from `below` to `above`. Of the two blocks of a joint
             that is not vertical, `above` lies higher. A fixed block is always `below`.
-        start, end: ends of the joint [m], with the normal to the left of the way from start to end.
+        start, end: ends of the joint [m], with the normal to the left of the direction from start to end.
         length: length out of the plane, that of the shorter block or part of one [m].
         travel: how far the block above can slide from end to start, and from start to end, before the two edges no
             longer overlap [m].
@@ -124,7 +124,7 @@ class Joint:
 
     @property
     def frame(self) -> Array:
-        """The normal and the way along, shape (2, 2)."""
+        """The normal and the direction along, shape (2, 2)."""
         return np.array([self.normal, self.along])
 
     @property
@@ -284,7 +284,7 @@ def meetings(edges: Edges, pairs: Integers, tolerance: float, gap: float) -> Mee
     pair, edge, other = pair[facing], edge[facing], other[facing]
     a, b, c, d = edges.start[edge], edges.end[edge], edges.start[other], edges.end[other]
     direction, n = (b - a) / np.hypot(*(b - a).T)[:, None], edges.normal[edge]
-    # the other outline runs the other way
+    # the other outline runs in the opposite direction
     first, last, long = _dot(d - a, direction), _dot(c - a, direction), _dot(b - a, direction)
     span = np.column_stack([np.maximum(0.0, first), np.minimum(long, last)])
     rise = _dot(c - d, n) / (last - first)
@@ -386,5 +386,5 @@ def neighbours(blocks: Sequence[Shape], tolerance: float) -> Integers:
         near = ((low[i] <= high[i + 1 : last]) & (low[i + 1 : last] <= high[i])).all(axis=1)
         others = i + 1 + np.flatnonzero(near & ~(fixed[i] & fixed[i + 1 : last]))
         pairs.append(np.column_stack([np.full(len(others), i), others]))
-    found = np.sort(order[np.concatenate(pairs)], axis=1)
-    return np.asarray(found[np.lexsort(found.T[::-1])])
+    ordered = np.sort(order[np.concatenate(pairs)], axis=1)
+    return np.asarray(ordered[np.lexsort(ordered.T[::-1])])

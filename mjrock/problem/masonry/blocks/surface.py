@@ -18,7 +18,7 @@ from .polyhedron import Polyhedron
 
 LEFT_OF_SIDE = 1e-6
 """Part of the area of a side that may be left of one that lies inside [-]."""
-LIKE = 1 - 1e-10
+PARALLEL_NORMALS = 1 - 1e-10
 """Cosine of the angle between the normals of two sides that may lie in one plane [-]."""
 
 
@@ -47,9 +47,11 @@ def surface_in_plane(parts: Sequence[Polygon], joined: Sequence[Joint], close: f
             covered[k][side].append(np.array([joint.start, joint.end]))
     pieces, inside = list[Side](), []
     for i, part in enumerate(parts):
-        left = [_uncovered(side, covered[i][j], SHORTEST_JOINT * close) for j, side in enumerate(part.sides)]
-        inside.append(np.array([not len(some) for some in left]))
-        pieces += [Side(ends, side.normal, (i,)) for side, some in zip(part.sides, left, strict=True) for ends in some]
+        uncovered = [_uncovered(side, covered[i][j], SHORTEST_JOINT * close) for j, side in enumerate(part.sides)]
+        inside.append(np.array([not len(some) for some in uncovered]))
+        pieces += [
+            Side(ends, side.normal, (i,)) for side, some in zip(part.sides, uncovered, strict=True) for ends in some
+        ]
     lengths = [part.length for part in parts]
     loops = [_straightened(loop, lengths, close) for loop in _loops(pieces)]
     sides = tuple(side for loop in loops for side in loop)
@@ -84,26 +86,26 @@ def _uncovered(side: Side, covered: Sequence[Array], shortest: float) -> list[Ar
     length = float(np.linalg.norm(end - start))
     direction = (end - start) / length
     spans = sorted(sorted(((ends - start) @ direction).tolist()) for ends in covered)
-    left, at = [], 0.0
+    uncovered, at = [], 0.0
     for low, high in [*spans, [length, length]]:
         if low - at > shortest:
             ends = start + at * direction if at > 0 else start, start + low * direction if low < length else end
-            left.append(np.array(ends))
+            uncovered.append(np.array(ends))
         at = max(at, high)
-    return left
+    return uncovered
 
 
 def _loops(pieces: Sequence[Side]) -> list[list[Side]]:
     """Pieces of edges in the order in which they follow each other, one list for each closed outline."""
-    left, loops = list(pieces), []
-    while left:
-        loop = [left.pop(0)]
-        while left:
-            off = [float(np.linalg.norm(piece.corners[0] - loop[-1].corners[1])) for piece in left]
+    remaining, loops = list(pieces), []
+    while remaining:
+        loop = [remaining.pop(0)]
+        while remaining:
+            off = [float(np.linalg.norm(piece.corners[0] - loop[-1].corners[1])) for piece in remaining]
             closing = float(np.linalg.norm(loop[0].corners[0] - loop[-1].corners[1]))
             if closing <= min(off):
                 break
-            loop.append(left.pop(int(np.argmin(off))))
+            loop.append(remaining.pop(int(np.argmin(off))))
         loops.append(loop)
     return loops
 
@@ -149,7 +151,7 @@ def _merged(sides: list[Side], close: float) -> list[Side]:
     sides = list(sides)
     while True:
         normals = np.array([side.normal for side in sides])
-        for i, j in np.argwhere(np.triu(normals @ normals.T > LIKE - 1e-12, 1)).tolist():
+        for i, j in np.argwhere(np.triu(normals @ normals.T > PARALLEL_NORMALS - 1e-12, 1)).tolist():
             if (both := _both(sides[i], sides[j], close)) is not None:
                 sides = [both, *(side for k, side in enumerate(sides) if k not in (i, j))]
                 break
@@ -160,7 +162,7 @@ def _merged(sides: list[Side], close: float) -> list[Side]:
 def _both(side: Side, other: Side, close: float) -> Side | None:
     """Two sides as one, if they lie in one plane and make a convex one."""
     origin = side.corners[0]
-    if side.normal @ other.normal < LIKE or np.abs((other.corners - origin) @ side.normal).max() > close:
+    if side.normal @ other.normal < PARALLEL_NORMALS or np.abs((other.corners - origin) @ side.normal).max() > close:
         return None
     axes = tangent_axes(side.normal[None])[0]
     flat, beside = (side.corners - origin) @ axes.T, (other.corners - origin) @ axes.T

@@ -192,12 +192,12 @@ def side_of(blocks: Sequence[FlatBlock], side_stop: bool | SideStop) -> FlatBloc
 
 def _inner(block: FlatBlock) -> list[Inner]:
     """The inner face of a block of a stack, from below: of each part of it its left edge."""
-    low, edge, found = float(block.corners[:, 1].min()), float(block.corners[:, 0].max()), list[Inner]()
+    low, edge, pieces = float(block.corners[:, 1].min()), float(block.corners[:, 0].max()), list[Inner]()
     for part in block.parts:
         ends = [part.corners[part.corners[:, 1] == z] for z in (part.corners[:, 1].min(), part.corners[:, 1].max())]
         (x, z), (x_high, high) = (tuple(end[end[:, 0].argmin()].tolist()) for end in ends)
-        found.append(Inner((x, x_high), (z, high), math.hypot(edge - x_high, high - low) - (high - low)))
-    return sorted(found, key=lambda piece: piece.z)
+        pieces.append(Inner((x, x_high), (z, high), math.hypot(edge - x_high, high - low) - (high - low)))
+    return sorted(pieces, key=lambda piece: piece.z)
 
 
 def _behind(pieces: Sequence[Inner], top: float) -> list[tuple[tuple[float, float], tuple[float, float]]]:
@@ -207,21 +207,21 @@ def _behind(pieces: Sequence[Inner], top: float) -> list[tuple[tuple[float, floa
         x_high = min(inmost, piece.x[1])
         inmost = min(x_high, piece.x[0])
         faces.insert(0, piece._replace(x=(inmost, x_high)))
-    found = list[tuple[tuple[float, float], tuple[float, float]]]()
+    parts = list[tuple[tuple[float, float], tuple[float, float]]]()
     for before, piece in pairwise([faces[0], *faces]):
         (x, x_high), (low, high) = piece.x, piece.z
         if low >= top:
             break
         if high > top:
             x_high, high = x + (x_high - x) * (top - low) / (high - low), top
-        if found and x > before.x[1]:  # above a ledge
+        if parts and x > before.x[1]:  # above a ledge
             low = min(low + before.rise, high)
-            found[-1] = (found[-1][0], (found[-1][1][0], low))
-        if found and found[-1][0] == (x, x) == (x, x_high):
-            found[-1] = ((x, x), (found[-1][1][0], high))
+            parts[-1] = (parts[-1][0], (parts[-1][1][0], low))
+        if parts and parts[-1][0] == (x, x) == (x, x_high):
+            parts[-1] = ((x, x), (parts[-1][1][0], high))
         elif high > low:
-            found.append(((x, x_high), (low, high)))
-    return found
+            parts.append(((x, x_high), (low, high)))
+    return parts
 
 
 def required_unit(unit: object) -> tuple[float, float]:

@@ -49,7 +49,7 @@ from .in_plane import (
 
 __all__ = ["between_sides", "box", "column", "corner", "dome", "facade", "wallette"]
 
-WHOLE = 1e-6
+COINCIDING = 1e-6
 """How far edges that are to coincide may lie apart, over the unit [-]."""
 SLENDEREST = 100.0
 """Height of a drum over its width at most, and the other way round [-]: a hundred sides can still be distinguished."""
@@ -163,7 +163,7 @@ def dome(
     return blocks
 
 
-JUST_LESS = 1 - 1e-9
+BELOW_BY_ROUNDING = 1 - 1e-9
 """Factor on the least size of a wall, so that rounding does not refuse it [-]."""
 RETURNS = {"both": (True, True), "left": (True, False), "right": (False, True), "none": (False, False)}
 """Whether there is a return wall at the left, where y is negative, and at the right end of a facade."""
@@ -211,7 +211,7 @@ class Walls(NamedTuple):
     def behind_ends(self, course: int) -> list[float]:
         """Where the blocks of a course of a return wall end, from the face of the facade inwards [m]."""
         first = self.thickness + (0.5 if course % 2 else 1.0) * self.behind
-        heads = np.arange(first, self.depth - WHOLE * self.behind, self.behind).tolist()
+        heads = np.arange(first, self.depth - COINCIDING * self.behind, self.behind).tolist()
         return [0.0 if course % 2 else self.thickness, *heads, self.depth]
 
 
@@ -233,9 +233,9 @@ def walls_of(
     sides = RETURNS[returns]
     t = 0.5 * long if thickness is None else thickness
     corners = t * sum(sides)
-    length = require_within("length", length, (corners + long) * JUST_LESS, 1e3, "m")
-    height = require_within("height", height, high * JUST_LESS, 1e3, "m")
-    depth = require_within("depth", depth, (t + 0.5 * long) * JUST_LESS, 1e3, "m") if any(sides) else t
+    length = require_within("length", length, (corners + long) * BELOW_BY_ROUNDING, 1e3, "m")
+    height = require_within("height", height, high * BELOW_BY_ROUNDING, 1e3, "m")
+    depth = require_within("depth", depth, (t + 0.5 * long) * BELOW_BY_ROUNDING, 1e3, "m") if any(sides) else t
     units, courses = round((length - corners) / long), round(height / high)
     halves = max(round(2 * (depth - t) / long), 1)
     gable = require_whole("gable", gable, 0, units + 1 - courses % 2)
@@ -302,7 +302,7 @@ def facade(
 
     for course in range(walls.courses + walls.gable):
         z = course * walls.high, (course + 1) * walls.high
-        over = [face for face in lintels if z[0] * (1 - WHOLE) <= face[2] < z[1] * (1 - WHOLE)]
+        over = [face for face in lintels if z[0] * (1 - COINCIDING) <= face[2] < z[1] * (1 - COINCIDING)]
         for face in sorted([*over, *_pieces(walls, course, [*holes, *lintels])]):
             lay(f"facade_{course}_{int((face[0] + half) / (0.5 * walls.unit) + 0.01)}", (-walls.thickness, 0.0), face)
         if course < walls.courses:
@@ -326,11 +326,11 @@ def _holes(openings: Sequence[tuple[float, Opening]], walls: Walls) -> tuple[lis
         if opening.round:
             raise ValueError(f"openings[{i}] is round, and blocks are convex: give the rectangle that is left open")
         left, right = y - 0.5 * opening.width, y + 0.5 * opening.width
-        top = walls.high * math.ceil(opening.head / walls.high + 0.5 - WHOLE)
+        top = walls.high * math.ceil(opening.head / walls.high + 0.5 - COINCIDING)
         bearing = 0.5 * walls.unit
         _require_inside(i, (left - bearing, right + bearing, opening.sill, top), walls)
         for k, (hole, lintel) in enumerate(zip(holes, lintels, strict=True)):
-            near = WHOLE * walls.unit
+            near = COINCIDING * walls.unit
             beside = left - bearing > lintel[1] - near or right + bearing < lintel[0] + near
             if not beside and opening.sill < lintel[3] - near and hole[2] < top - near:
                 raise ValueError(f"openings[{i}] and openings[{k}], or the lintels over them, overlap")
@@ -342,10 +342,10 @@ def _holes(openings: Sequence[tuple[float, Opening]], walls: Walls) -> tuple[lis
 def _require_inside(i: int, occupied: Rectangle, walls: Walls) -> None:
     """Raise a ValueError for an opening that does not lie, with its lintel, within the courses that it cuts."""
     left, right, sill, top = occupied
-    near = WHOLE * walls.unit
+    near = COINCIDING * walls.unit
     if top > (walls.courses + walls.gable) * walls.high + near:
         raise ValueError(f"openings[{i}] has no course above it for its lintel, which ends at {top:g} m")
-    for course in range(int(sill / walls.high + WHOLE), round(top / walls.high)):
+    for course in range(int(sill / walls.high + COINCIDING), round(top / walls.high)):
         first, last = walls.span(course)
         if left < first - near or right > last + near:
             raise ValueError(
@@ -357,7 +357,7 @@ def _require_inside(i: int, occupied: Rectangle, walls: Walls) -> None:
 def _pieces(walls: Walls, course: int, holes: Sequence[Rectangle]) -> list[Rectangle]:
     """Units of a course of the facade, cut where openings and lintels are."""
     (first, last), low, high = walls.span(course), course * walls.high, (course + 1) * walls.high
-    near, least = WHOLE * walls.unit, SMALLEST_PIECE * (1 - WHOLE)
+    near, least = COINCIDING * walls.unit, SMALLEST_PIECE * (1 - COINCIDING)
     cutting = [hole for hole in holes if hole[2] < high - near and hole[3] > low + near]
     edges = [edge for hole in cutting for edge in hole[:2] if first + near < edge < last - near]
     cuts = sorted({first, *edges, last})
@@ -486,7 +486,7 @@ def between_sides(bending: HorizontalBending) -> list[Polyhedron]:
 def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: int) -> list[Polyhedron]:
     """Rectangles of a wall of the plane, its base and beam, as boxes in space, see `wallette`."""
     middle = 0.5 * float(blocks[0].corners[:, 0].min() + blocks[0].corners[:, 0].max())
-    made: list[tuple[Polygon, str, tuple[float, float, float], tuple[float, float, float]]] = []
+    boxes: list[tuple[Polygon, str, tuple[float, float, float], tuple[float, float, float]]] = []
     for block in blocks:
         (left, low), (right, high) = block.corners.min(axis=0).tolist(), block.corners.max(axis=0).tolist()
         name, thick = str(block.name), block.length
@@ -504,11 +504,11 @@ def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: in
         for part, ((front, back), (a, b)) in zip(names, spans, strict=True):
             size = back - front, b - a, high - low
             centre = -0.5 * (front + back), 0.5 * (a + b) - middle, 0.5 * (low + high)
-            made.append((block, part, size, centre))
-    if len(made) > MOST_BODIES:
-        many = f"leaves = {leaves} and headers = {headers} make a wall of {len(made)} blocks"
+            boxes.append((block, part, size, centre))
+    if len(boxes) > MOST_BODIES:
+        many = f"leaves = {leaves} and headers = {headers} make a wall of {len(boxes)} blocks"
         raise ValueError(f"{many}; the valid range ends at {MOST_BODIES}")
-    return [Polyhedron.box(size, centre, block.density, block.fixed, part) for block, part, size, centre in made]
+    return [Polyhedron.box(size, centre, block.density, block.fixed, part) for block, part, size, centre in boxes]
 
 
 @within_ranges

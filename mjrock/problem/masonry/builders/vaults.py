@@ -27,7 +27,7 @@ from .in_plane import (
     rings_of,
     voussoirs_of,
 )
-from .in_space import JUST_LESS
+from .in_space import BELOW_BY_ROUNDING
 
 __all__ = ["barrel_vault", "bridge", "groin_vault"]
 
@@ -178,7 +178,7 @@ def groin_vault(
     (x, z), (reach, top) = springing_of(radius, thickness, span_angle).tolist()
     pier = np.array([(x, z), (reach, top), (reach, z - (reach - x)), (x, z - (reach - x))])
     strips = [Polygon(pier * (-1, 1), density), *voussoirs, Polygon(pier, density)]
-    length = require_within("length", length, 2 * reach * JUST_LESS, 1e3, "m")
+    length = require_within("length", length, 2 * reach * BELOW_BY_ROUNDING, 1e3, "m")
     unit, cut = require_within("unit", unit, 1e-2, length, "m"), require_flag("cut", cut)
     if 4 * len(strips) * (0.5 * length / unit + 1) >= MOST_BODIES:
         raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BODIES}")

@@ -175,23 +175,23 @@ def meshes_of(meshes: Mapping[str, tuple[ArrayLike, Sequence[Sequence[int]]]]) -
             "meshes is empty: the model has no element of the kind that was taken from it. Most models of IFC have "
             "whole walls, IfcWall, and no IfcBuildingElementPart"
         )
-    found = []
+    bodies = []
     for name, mesh in meshes.items():
-        what = f"meshes[{shown(name)}]"
+        label = f"meshes[{shown(name)}]"
         if not isinstance(mesh, tuple | list) or len(mesh) != 2:
-            raise TypeError(f"{what} = {shown(mesh)} is not a pair of vertices and faces")
-        vertices = require_reals(what, mesh[0], "vertices of the shape (n, 3)")
+            raise TypeError(f"{label} = {shown(mesh)} is not a pair of vertices and faces")
+        vertices = require_reals(label, mesh[0], "vertices of the shape (n, 3)")
         if vertices.ndim != 2 or vertices.shape[1] != 3:
-            raise ValueError(f"{what}: vertices has the shape {vertices.shape}; (n, 3) is needed")
+            raise ValueError(f"{label}: vertices has the shape {vertices.shape}; (n, 3) is needed")
         try:
             faces = [tuple(map(index, face)) for face in mesh[1]]
         except TypeError:
-            raise TypeError(f"{what}: faces = {shown(mesh[1])} are not lists of numbers of vertices") from None
+            raise TypeError(f"{label}: faces = {shown(mesh[1])} are not lists of numbers of vertices") from None
         for face in faces:
             if len(face) < 3 or min(face) < 0 or max(face) >= len(vertices):
-                raise ValueError(f"{what}: the face {face} is not three or more of {len(vertices)} vertices")
-        found.append(Mesh(block_name(require_text("meshes", name), "body"), vertices, faces))
-    return found
+                raise ValueError(f"{label}: the face {face} is not three or more of {len(vertices)} vertices")
+        bodies.append(Mesh(block_name(require_text("meshes", name), "body"), vertices, faces))
+    return bodies
 
 
 def block_name(name: str, otherwise: str) -> str:
@@ -243,17 +243,19 @@ def _all_bodies(meshes: Sequence[Mesh]) -> list[Mesh]:
     """The bodies of all meshes with names of their own. It warns of those with the vertices of one before them, which
     are left out."""
     seen: set[bytes] = set()
-    again, bodies = list[Mesh](), list[Mesh]()
+    repeated, bodies = list[Mesh](), list[Mesh]()
     for mesh in meshes:
-        own = list[Mesh]()
+        of_mesh = list[Mesh]()
         for body in mesh_bodies(mesh):
             places = np.unique(body.vertices, axis=0).tobytes()
-            (again if places in seen else own).append(body)
+            (repeated if places in seen else of_mesh).append(body)
             seen.add(places)
-        bodies += own if len(own) == 1 else [body._replace(name=f"{mesh.name}_{i}") for i, body in enumerate(own)]
-    if again:
-        names = named([body.name for body in again])
-        warn_of(f"{len(again)} bodies are drawn twice, and read once: {names}")
+        if len(of_mesh) > 1:
+            of_mesh = [body._replace(name=f"{mesh.name}_{i}") for i, body in enumerate(of_mesh)]
+        bodies += of_mesh
+    if repeated:
+        names = named([body.name for body in repeated])
+        warn_of(f"{len(repeated)} bodies are drawn twice, and read once: {names}")
     count = Counter(body.name for body in bodies)
     return [body if count[body.name] == 1 else body._replace(name=f"{body.name}_{i}") for i, body in enumerate(bodies)]
 
@@ -288,7 +290,7 @@ def is_plate(body: Mesh) -> bool:
 
 
 def oriented(body: Mesh) -> Mesh:
-    """A closed body with all its faces counterclockwise from outside, whichever way they turn."""
+    """A closed body with all its faces counterclockwise from outside, whatever their order was."""
     faces = list(body.faces)
     of_edge: dict[frozenset[int], list[int]] = {}
     for number, face in enumerate(faces):
@@ -299,7 +301,7 @@ def oriented(body: Mesh) -> Mesh:
         number = ahead.pop()
         for edge in face_edges(faces[number]):
             for other in of_edge[frozenset(edge)]:
-                if other not in seen:  # beside a face that turns the same way, an edge is passed the other way
+                if other not in seen:  # a face of the same sense passes their common edge in reverse
                     faces[other] = faces[other][::-1] if edge in face_edges(faces[other]) else faces[other]
                     seen.add(other)
                     ahead.append(other)

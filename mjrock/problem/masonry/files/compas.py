@@ -63,15 +63,15 @@ def read_compas(path: AnyPath) -> list[Mesh]:
     return meshes
 
 
-def _inside(thing: object) -> Any:
+def _inside(part: object) -> Any:
     """What a part of a file holds: under `data` since COMPAS 2, under `value` before, and at times in a list of one."""
     while True:
-        if isinstance(thing, list) and len(thing) == 1:
-            thing = thing[0]
-        elif isinstance(thing, dict) and ("dtype" in thing or "datatype" in thing or set(thing) == {"data"}):
-            thing = thing["data"] if "data" in thing else thing["value"]
+        if isinstance(part, list) and len(part) == 1:
+            part = part[0]
+        elif isinstance(part, dict) and ("dtype" in part or "datatype" in part or set(part) == {"data"}):
+            part = part["data"] if "data" in part else part["value"]
         else:
-            return thing
+            return part
 
 
 def _parts(content: Part | list[Part]) -> list[tuple[object, Part]]:

@@ -81,29 +81,29 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> DxfDrawing:
     except ImportError as error:
         raise ImportError(f"{error}; ezdxf reads drawings: pip install ezdxf") from error
     content = bytes_of(path)
-    if found_kinds := [what for start, what in NO_DRAWING.items() if content.startswith(start)]:
-        raise ValueError(f"it is {found_kinds[0]}, and no drawing in DXF; save it as text in DXF")
-    document, auditor = _sound(recover.readfile, str(path))
+    if other_kinds := [description for start, description in NO_DRAWING.items() if content.startswith(start)]:
+        raise ValueError(f"it is {other_kinds[0]}, and no drawing in DXF; save it as text in DXF")
+    document, auditor = _read_by_library(recover.readfile, str(path))
     unit = None
-    if _sound(lambda: document.units):
-        unit = _sound(lambda: units.conversion_factor(InsertUnits(document.units), InsertUnits.Meters))
+    if _read_by_library(lambda: document.units):
+        unit = _read_by_library(lambda: units.conversion_factor(InsertUnits(document.units), InsertUnits.Meters))
     space = document.modelspace()
-    _sound(_require_few, document, space)
-    entities = _sound(lambda: list(_inserted(space)))
-    found = _sound(lambda: {entity.dxf.layer: None for entity in entities})
+    _read_by_library(_require_few, document, space)
+    entities = _read_by_library(lambda: list(_inserted(space)))
+    layer_names = _read_by_library(lambda: {entity.dxf.layer: None for entity in entities})
     for layer in layers or ():
-        if layer not in found:
-            raise ValueError(f"layers = {layer!r} holds nothing; the layers are {named(list(found))}")
+        if layer not in layer_names:
+            raise ValueError(f"layers = {layer!r} holds nothing; the layers are {named(list(layer_names))}")
     every, others = _outlines([each for each in entities if layers is None or each.dxf.layer in layers])
     if repairs := [*auditor.errors, *auditor.fixes]:
         text = named([" ".join(str(repair.message).split())[:120] for repair in repairs])
         warn_of(f"path = {path} is damaged, and was repaired while it was read: {text}")
     first: dict[bytes, Outline] = {}
-    if again := [one.name for one in every if first.setdefault(_places(one), one) is not one]:
-        warn_of(f"path = {path}: {len(again)} outlines are drawn twice, and read once: {named(again)}")
+    if repeated := [one.name for one in every if first.setdefault(_places(one), one) is not one]:
+        warn_of(f"path = {path}: {len(repeated)} outlines are drawn twice, and read once: {named(repeated)}")
     outlines = list(first.values())
-    if left := {kind: count for kind, count in others.items() if kind in AREAS}:
-        warn_of(f"path = {path}: only closed polylines are read; left out are {_counted(left)}")
+    if ignored := {kind: count for kind, count in others.items() if kind in AREAS}:
+        warn_of(f"path = {path}: only closed polylines are read; left out are {_counted(ignored)}")
     return DxfDrawing(outlines, unit)
 
 
@@ -116,7 +116,7 @@ def _outlines(entities: Sequence[DXFEntity]) -> tuple[list[Outline], Counter[str
             continue
         layer = entity.dxf.layer
         try:
-            corners = _sound(_corners, entity)
+            corners = _read_by_library(_corners, entity)
         except DrawingError as error:
             raise ValueError(f"layer {layer}: {error}; or give the layers that hold blocks by layers=") from None
         outlines.append(Outline(f"{block_name(layer, 'layer')}_{counts[layer]}", layer, corners))
@@ -132,16 +132,16 @@ def _places(outline: Outline) -> bytes:
     return np.unique(outline.corners.round(9) + 0.0, axis=0).tobytes()
 
 
-def _counted(kinds: Mapping[str, int]) -> str:
+def _counted(counts: Mapping[str, int]) -> str:
     """Kinds of things and how many of each, in words."""
-    return ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+    return ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
 
 
 class DrawingError(ValueError):
     """A polyline that is no outline of a block, or inserted blocks that hold each other or are too many."""
 
 
-def _sound(call: Callable[P, Result], *given: P.args, **options: P.kwargs) -> Result:
+def _read_by_library(call: Callable[P, Result], *given: P.args, **options: P.kwargs) -> Result:
     """What a call into the library of drawings returns. Raises a ValueError for any error of it."""
     try:
         return call(*given, **options)
@@ -177,8 +177,8 @@ def _require_few(document: Drawing, space: Iterable[DXFEntity]) -> None:
         outlines = inserted = 0
         for entity in entities:
             if _is_insert(entity):
-                times, one = max(1, entity.mcount), block(entity.dxf.name, within)
-                outlines, inserted = outlines + times * one.outlines, inserted + times * one.inserted
+                times, contents = max(1, entity.mcount), block(entity.dxf.name, within)
+                outlines, inserted = outlines + times * contents.outlines, inserted + times * contents.inserted
             else:
                 outlines += _is_polyline(entity)
                 inserted += bool(within)
@@ -193,13 +193,13 @@ def _require_few(document: Drawing, space: Iterable[DXFEntity]) -> None:
             counts[name] = counted(document.blocks.get(name) or (), (*within, name))
         return counts[name]
 
-    found = counted(space, ())
-    for count, what, most in (
-        (found.outlines, "outlines", MOST_BODIES),
-        (found.inserted, "things that are inserted", MOST_INSERTED),
+    total = counted(space, ())
+    for count, subject, most in (
+        (total.outlines, "outlines", MOST_BODIES),
+        (total.inserted, "things that are inserted", MOST_INSERTED),
     ):
         if count > most:
-            raise DrawingError(f"there are {count:.3g} {what}, and at most {most} are taken")
+            raise DrawingError(f"there are {count:.3g} {subject}, and at most {most} are taken")
 
 
 def _inserted(entities: Iterable[DXFEntity]) -> Iterator[DXFEntity]:
@@ -253,11 +253,11 @@ def polygons_of(drawing: DxfDrawing, file: FileOptions, density: OfLayer, length
         if name not in known:
             raise ValueError(f"fixed = {name!r} is neither a layer nor a block; the layers are {named(list(layers))}")
 
-    def of_layer(what: str, value: OfLayer, layer: str) -> float:
+    def of_layer(argument: str, value: OfLayer, layer: str) -> float:
         if not isinstance(value, Mapping):
             return value
         if layer not in value:
-            raise ValueError(f"{what} = {shown(value)} has nothing for the layer {layer!r}")
+            raise ValueError(f"{argument} = {shown(value)} has nothing for the layer {layer!r}")
         return value[layer]
 
     polygons: dict[str, FlatBlock] = {}

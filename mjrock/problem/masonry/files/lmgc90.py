@@ -42,14 +42,14 @@ def read_lmgc90(path: AnyPath) -> list[Mesh]:
     """
     path = Path(path)
     bodies = path / "BODIES.DAT" if path.is_dir() else path
-    found = list(BODY_OF_LMGC90.finditer(file_text(bodies)))
-    if not found:
+    body_texts = list(BODY_OF_LMGC90.finditer(file_text(bodies)))
+    if not body_texts:
         raise ValueError("it has no $bdyty: it is not a file BODIES.DAT of LMGC90, or is cut short")
     materials = {name: _value(text) for name, text in MATERIAL.findall(_beside(bodies, "BULK_BEHAV.DAT"))}
     frames = {number: _values(text) for number, text in _rigid(_beside(bodies, "DOF.INI")).items()}
     driven = {number: _driven(text) for number, text in _rigid(_beside(bodies, "DRV_DOF.DAT")).items()}
     meshes, others = [], Counter[str]()
-    for kind, digits, text in (body.groups() for body in found):
+    for kind, digits, text in (body.groups() for body in body_texts):
         number = int(digits)
         if kind != "RBDY3":
             raise ValueError(f"body {number} is of the kind {kind}; bodies in space of the kind RBDY3 are read")
@@ -136,5 +136,7 @@ def _rigid(text: str) -> dict[int, str]:
 
 def _driven(text: str) -> bool | None:
     """Whether the three velocities of a body that are given move it; None where they are not all given."""
-    given = {int(direction): (_value(constant), _value(wave)) for direction, constant, wave in DRIVEN.findall(text)}
-    return any(map(any, given.values())) if {1, 2, 3} <= given.keys() else None
+    velocities = {
+        int(direction): (_value(constant), _value(wave)) for direction, constant, wave in DRIVEN.findall(text)
+    }
+    return any(map(any, velocities.values())) if {1, 2, 3} <= velocities.keys() else None

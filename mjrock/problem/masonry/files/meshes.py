@@ -50,7 +50,7 @@ def read_obj(path: AnyPath) -> list[Mesh]:
     """
     vertices: list[tuple[float, ...]] = []
     faces: dict[tuple[str, str], list[tuple[int, ...]]] = {}
-    thing, group = "", ""
+    label, group = "", ""
     for count, line in enumerate(file_text(path).replace("\\\n", " ").splitlines(), 1):
         kind, _, rest = line.partition("#")[0].strip().partition(" ")
         try:
@@ -61,19 +61,19 @@ def read_obj(path: AnyPath) -> list[Mesh]:
                 face = tuple(i - 1 if i > 0 else len(vertices) + i for i in corners)
                 if len(face) < 3 or 0 in corners or not all(0 <= i < len(vertices) for i in face):
                     raise ValueError
-                faces.setdefault((thing, group), []).append(face)
+                faces.setdefault((label, group), []).append(face)
             elif kind == "o":
-                thing, group = rest.strip(), ""
+                label, group = rest.strip(), ""
             elif kind == "g":
                 group = rest.strip()
         except ValueError:
             raise ValueError(f"line {count}: {line[:60]!r} is not a vertex or face of an OBJ file") from None
     if not faces:
         raise ValueError("it has no faces: it is not an OBJ file, or is cut short")
-    things = Counter(thing for thing, _ in faces)
+    groups_of = Counter(label for label, _ in faces)
     places, meshes = np.array(vertices), []
-    for i, ((thing, group), ring) in enumerate(faces.items()):
-        name = thing if thing and things[thing] == 1 else "_".join(part for part in (thing, group) if part)
+    for i, ((label, group), ring) in enumerate(faces.items()):
+        name = label if label and groups_of[label] == 1 else "_".join(part for part in (label, group) if part)
         meshes.append(Mesh(block_name(name, f"body_{i}"), *used(places, ring)))
     return meshes
 

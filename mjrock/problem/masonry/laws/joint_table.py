@@ -296,22 +296,24 @@ def _values(name: str, given: OfJoint | None, joints: Sequence[AnyJoint]) -> Arr
     """A property of each joint, with what stands for None, shape (joints,)."""
     if not callable(given):
         return np.full(len(joints), FOR_NONE[name] if given is None else given)
-    one, values = declared(Dry)[name], [value_at(name, given, joint) for joint in joints]
-    found = [one.checked(f"{name} of {joint.name}", value) for joint, value in zip(joints, values, strict=True)]
-    return np.array([FOR_NONE[name] if value is None else value for value in found])
+    declaration, values = declared(Dry)[name], [value_at(name, given, joint) for joint in joints]
+    for i, joint in enumerate(joints):
+        value = declaration.checked(f"{name} of {joint.name}", values[i])
+        values[i] = FOR_NONE[name] if value is None else value
+    return np.array(values)
 
 
 def _bonds(given: OfBond, joints: Sequence[AnyJoint], columns: dict[str, Array]) -> list[Bond | Own | Dry | None]:
     """The bond of each joint, the law of one's own, or the joint with its further numbers, None where it has none."""
-    found: list[Bond | Own | Dry | None] = []
+    bonds: list[Bond | Own | Dry | None] = []
     for i, joint in enumerate(joints):
         bond = value_at("bond", given, joint) if callable(given) else given
         require_kind(f"bond of {joint.name}" if callable(given) else "bond", bond, Bond, OwnLaw, Dry, type(None))
         if isinstance(bond, OwnLaw):
-            found.append(Own(bond, float(columns["k_n"][i]), float(columns["friction"][i])))
+            bonds.append(Own(bond, float(columns["k_n"][i]), float(columns["friction"][i])))
         else:
-            found.append(None if isinstance(bond, Bond) and bond.is_dry else bond)
-    return found
+            bonds.append(None if isinstance(bond, Bond) and bond.is_dry else bond)
+    return bonds
 
 
 Class = TypeVar("Class", bound=type)

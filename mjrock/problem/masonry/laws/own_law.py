@@ -28,7 +28,7 @@ LEAST_CLOSING, MOST_CLOSING = 1e-12, 1e-2
 """Closings between which that of a pressure is looked for [m]."""
 CLOSING_PASSES = 60
 """Halvings of the closing of a pressure, in its logarithm."""
-LITTLE = 1e-3
+LOW_PRESSURE = 1e-3
 """Pressure up to which a stiffness is that of the pressure, over that of the weight of all on all such joints [-]."""
 
 
@@ -136,7 +136,7 @@ class Own(AppliedLaw):
         return math.exp(high)
 
     def stiffest(self, deepest: float) -> tuple[float, float]:
-        """The largest stiffness [N/m3] and damping coefficient [N s/m3] up to a closing either way [m]."""
+        """The largest stiffness [N/m3] and damping coefficient [N s/m3] up to a closing or opening [m]."""
         closings = np.linspace(0.0, deepest, 17)[1:].tolist()
         k = max(self.slope(sign * closing) for closing in closings for sign in ((1.0, -1.0) if self.pulls else (1.0,)))
         c = max(abs(self.answer(closing, rate).damping) / rate for closing in closings for rate in RATES)
@@ -160,9 +160,9 @@ def require_lawful(own: Own) -> None:
     whose energy is not the integral of its stress."""
     scale, name = own.closing_at(PRESSURES[-1]), own.name
     rest = own.answer(0.0)
-    for what, value in (("stress", rest.stress), ("energy", rest.energy)):
+    for answer, value in (("stress", rest.stress), ("energy", rest.energy)):
         if value != 0:
-            raise ValueError(f"{name}.{what} is {value:g} where a joint is neither closed nor open; 0 is needed")
+            raise ValueError(f"{name}.{answer} is {value:g} where a joint is neither closed nor open; 0 is needed")
     for share in PROBED:
         for sign, verb in ((1.0, "pulls where it is closed"), (-1.0, "presses where it is open")):
             closing = sign * share * scale
@@ -197,11 +197,11 @@ class OwnSprings(NamedTuple):
     @classmethod
     def from_joints(cls, bonds: tuple[Any, ...], joint: Integers, area: Array, weight: float) -> OwnSprings:
         """Those of contacts with these joints and areas, under a weight [N]."""
-        some = np.array([isinstance(bonds[i], Own) for i in joint.tolist()]) if bonds else np.zeros(0, dtype=bool)
-        contacts = np.flatnonzero(some)
+        owned = np.array([isinstance(bonds[i], Own) for i in joint.tolist()]) if bonds else np.zeros(0, dtype=bool)
+        contacts = np.flatnonzero(owned)
         laws = tuple(bonds[i] for i in joint[contacts].tolist())
-        little = LITTLE * weight / max(float(area[contacts].sum()), 1e-300)
-        floors = {law: law.closing_at(little) for law in set(laws)}
+        pressure = LOW_PRESSURE * weight / max(float(area[contacts].sum()), 1e-300)
+        floors = {law: law.closing_at(pressure) for law in set(laws)}
         return cls(contacts, laws, area[contacts], np.array([floors[law] for law in laws]))
 
     def and_links(self, ties: Integers, links: tuple[AppliedLink, ...]) -> OwnSprings | None:
@@ -218,8 +218,8 @@ class OwnSprings(NamedTuple):
     def answers(self, gap: Array) -> tuple[Array, Array]:
         """Force [N] and energy [J] of each at the gaps of all contacts and ties [m], shape (n,) each."""
         gaps = gap[self.springs].tolist()
-        found = [law.answer(-gap) for law, gap in zip(self.laws, gaps, strict=True)]
-        return self.area * [each.stress for each in found], self.area * [each.energy for each in found]
+        answers = [law.answer(-gap) for law, gap in zip(self.laws, gaps, strict=True)]
+        return self.area * [each.stress for each in answers], self.area * [each.energy for each in answers]
 
     def slopes(self, gap: Array) -> Array:
         """Stiffness of each at the gaps of all contacts and ties [N/m], shape (n,)."""

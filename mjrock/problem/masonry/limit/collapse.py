@@ -58,9 +58,9 @@ def joint_forces(masonry: Masonry, forces: Array) -> JointForces:
     return JointForces(normal.copy(), shear.copy(), eccentricity.copy())
 
 
-LARGEST = 1e6
+INFINITE_MULTIPLIER = 1e6
 """Multiplier from which it counts as infinite [-]."""
-BALANCED = 1e-9
+BALANCED_RESULTANT = 1e-9
 """Resultant of forces that grow below which they have no direction, over the sum of their components [-]."""
 
 
@@ -144,7 +144,7 @@ def limit_of(
     """
     push, grown, applied = loads
     weight, lines, resultant = weight_of(masonry), masonry.lines, grown[:, :3].sum(axis=0)
-    turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED * np.abs(grown[:, :3]).sum()
+    turned = masonry.in_space and np.linalg.norm(resultant) > BALANCED_RESULTANT * np.abs(grown[:, :3]).sum()
     tangents = tangent_axes_along(lines.normal, resultant) if turned else lines.tangents
     problem = LimitProblem(masonry, weight + np.ravel(applied), grown, tangents, ties or Pulls.from_forces(masonry))
     forces = _associated(problem, least) if associated else _without_dilatancy(problem)
@@ -200,7 +200,7 @@ def _associated(problem: LimitProblem, least: float) -> LimitForces | None:
     bounds[-1, 0], prices[-1] = least, -1.0
     columns = hstack([pressed, bonds.columns, ties.columns, raised])
     answer = least_cost(prices, A_eq=columns, b_eq=-constant / total / sizes, bounds=bounds, method=method(masonry))
-    if answer.status == 3 or (answer.status == 0 and answer.x[-1] > LARGEST):
+    if answer.status == 3 or (answer.status == 0 and answer.x[-1] > INFINITE_MULTIPLIER):
         return None  # unbounded
     if answer.status == 2 and least < 0:
         raise UnbalancedError("pose: no multiplier of the forces that grow holds the masonry there, either way")

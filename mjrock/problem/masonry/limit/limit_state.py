@@ -13,8 +13,8 @@ the velocities of the blocks and the rates at which joints slide, these negative
 
 For associated friction M' is M: a joint that slides at a rate s opens at mu s. For Coulomb's friction, without
 dilatancy, M' lacks mu G. In a state x . z = 0: what opens bears nothing, and what slides has all its friction against
-its way. With associated friction the largest lambda of a linear programme belongs to the only states. Without dilatancy
-there are many. The masonry moves in each of them, so that the least lambda is looked for, by descent.
+its slip. With associated friction the largest lambda of a linear programme belongs to the only states. There are many
+without dilatancy. The masonry moves in each of them, so that the least lambda is looked for, by descent.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ DESCENTS = 60
 """Most steps of a descent."""
 SHARED = 1e-10
 """Power x . z up to which forces and mechanism make a state, over that of the forces that grow [-]."""
-NOTHING, STILL = 1e-9, 1e-8
+UNLOADED, UNMOVED_RATE = 1e-9, 1e-8
 """Force that counts as none, over the weight, and a rate, over the largest of its mechanism [-]."""
 STATE_TOLERANCE = 1e-7
-"""What forces may miss, rates go the wrong way and both share in a state that is returned, as above [-]."""
+"""What forces may miss, rates have the wrong sign and both share in a state that is returned, as above [-]."""
 GAIN = 1e-9
 """Gain of two steps below which a descent ends [-]."""
-PULL = 1e-3
+PRICE_OF_MULTIPLIER = 1e-3
 """Price of the multiplier in the search for a state, over that of the power that is shared [-]."""
 DIGITS = 5
 """Digits of multipliers that tell states apart."""
@@ -176,7 +176,7 @@ class Programme:
         answer = least_cost(prices, A_eq=self._moving, b_eq=right, bounds=bounds, method=self.method, options=EXACT)
         if answer.status != 0:
             return None
-        z = np.where(answer.x[:count] > STILL * answer.x[:count].max(), answer.x[:count], 0.0)
+        z = np.where(answer.x[:count] > UNMOVED_RATE * answer.x[:count].max(), answer.x[:count], 0.0)
         return z, answer.x[count:]
 
     @cached_property
@@ -186,7 +186,7 @@ class Programme:
         return csc_array(block_array([[*opening], [None, csr_array(self.grown[None])]]))
 
     def holds(self, state: State) -> bool:
-        """Whether forces balance, nothing that opens or slides goes the wrong way, and they share no power."""
+        """Whether forces balance, nothing that opens or slides does so with the wrong sign, and they share no power."""
         z = (self.matrix - self.grip).T @ state.p
         missing = np.abs(self.matrix @ state.x + state.multiplier * self.grown + self.weight).max()
         return bool(max(missing, -z.min() / np.abs(z).max(), abs(state.x @ z)) < STATE_TOLERANCE)
@@ -219,7 +219,7 @@ def states_without_dilatancy(programme: Programme) -> tuple[State, ...]:
     nothing = np.zeros(programme.matrix.shape[1])
     if programme.mechanism(nothing) is None:
         return ()
-    ends = [_descended(programme, _met(programme, np.maximum(x, 0.0))) for x in _starts(programme, nothing)]
+    ends = [_descended(programme, _mechanism_near(programme, np.maximum(x, 0.0))) for x in _starts(programme, nothing)]
     limited = [state for state in ends if state is not None and programme.holds(state)]
     states = {round(state.multiplier, DIGITS): state for state in limited}
     if not states:
@@ -251,12 +251,12 @@ def _starts(programme: Programme, nothing: Array) -> Iterator[Array]:
         share = max(SHRINKS * share, LEAST_SLOPE)
 
 
-def _met(programme: Programme, x: Array) -> tuple[Array, Array] | None:
+def _mechanism_near(programme: Programme, x: Array) -> tuple[Array, Array] | None:
     """The mechanism of a state near the forces x, found by turns of forces and mechanisms that share less power."""
     shared: list[float] = []
     for _ in range(TURNS):
         moving = programme.mechanism(x)
-        answer = None if moving is None else programme.forces(moving[0], PULL)
+        answer = None if moving is None else programme.forces(moving[0], PRICE_OF_MULTIPLIER)
         if moving is None or answer is None or answer.status != 0:
             return None
         x = np.maximum(answer.x[:-1], 0.0)
@@ -287,5 +287,5 @@ def _descended(programme: Programme, moving: tuple[Array, Array] | None) -> Stat
         gains = np.where(moves, np.maximum(-answer.upper.marginals[:-1], 0.0), 0.0)
         if gains.max() < GAIN or (len(multipliers) > 2 and multipliers[-3] - multipliers[-1] < GAIN):
             break
-        moving = programme.mechanism(gains, (state.x < NOTHING) | moves)
+        moving = programme.mechanism(gains, (state.x < UNLOADED) | moves)
     return state

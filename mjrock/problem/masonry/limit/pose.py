@@ -23,7 +23,7 @@ from ..effects import place_in_world
 from ..lines import Lines
 from ..masonry import Masonry
 
-SUNK, BEYOND = 0.05, 0.01
+DEEPEST_IN_POSE, FARTHEST_IN_POSE = 0.05, 0.01
 """How deep a contact line may lie behind its face, and in space how far a point may lie beside it, over the width of
 the joint [-]."""
 OFF_UNIT = 1e-6
@@ -222,7 +222,7 @@ def _in_space(masonry: Masonry, moves: Moves) -> Lines:
     for name, past in _slid_off(masonry, back, gap <= masonry.tolerance):
         raise ValueError(
             f"pose: the joint {name} has slid {past:.3g} m off its face; limit analysis of blocks in space takes poses "
-            f"in which joints turn and open, and slide by up to {BEYOND:g} of their width past an edge"
+            f"in which joints turn and open, and slide by up to {FARTHEST_IN_POSE:g} of their width past an edge"
         )
     return _pressed(masonry, masonry.lines._replace(at=at, normal=normal), gap)
 
@@ -238,7 +238,7 @@ def _slid_off(masonry: Masonry, back: Array, pressed: Flags) -> Iterator[tuple[s
             face = (np.asarray(masonry.blocks[own].sides[side].corners) - joint.outline[0]) @ joint.axes.T
             flat = (back[there] - joint.outline[0]) @ joint.axes.T
             past = -within(face if own == joint.below else face[::-1], flat).min(initial=0.0)
-            if past > BEYOND * joint.width:
+            if past > FARTHEST_IN_POSE * joint.width:
                 yield joint.name, float(past)
 
 
@@ -246,10 +246,10 @@ def _pressed(masonry: Masonry, lines: Lines, gap: Array) -> Lines:
     """The lines whose gap is closed [m]."""
     widths = np.array([joint.width for joint in masonry.joints])[lines.joint]
     deepest = int((gap / widths).argmin())
-    if gap[deepest] < -SUNK * widths[deepest]:
+    if gap[deepest] < -DEEPEST_IN_POSE * widths[deepest]:
         name = masonry.joints[lines.joint[deepest]].name
         raise ValueError(
             f"pose: the blocks of the joint {name} are {-gap[deepest]:.3g} m inside one another; the valid range is up "
-            f"to {SUNK:g} of its width"
+            f"to {DEEPEST_IN_POSE:g} of its width"
         )
     return Lines(*(values[gap <= masonry.tolerance] for values in lines))  # type: ignore[arg-type]

@@ -22,7 +22,7 @@ from ..masonry import Masonry
 
 UNBALANCED = 1e-7
 """Force that may be missing, over the weight of all blocks [-]."""
-MOVES = 1e-6
+MOVING_VELOCITY = 1e-6
 """Velocity in the mechanism of collapse from which a block counts as moving, over the largest [-]."""
 
 MOST_FRICTION = 2.0
@@ -131,15 +131,17 @@ def slippery(masonry: Masonry) -> tuple[tuple[str, ...], tuple[str, ...]]:
     moved = np.abs(free).max(axis=1, initial=0.0).reshape(len(masonry.free), -1).max(axis=1)
     slides = np.abs(sliding @ free).max(axis=1, initial=0.0).reshape(parts, -1).max(axis=0)
     return (
-        tuple(masonry.names[i] for i, v in zip(masonry.free, moved, strict=True) if v > MOVES),
-        tuple(joint.name for joint, v in zip(masonry.joints, slides, strict=True) if v > MOVES),
+        tuple(masonry.names[i] for i, v in zip(masonry.free, moved, strict=True) if v > MOVING_VELOCITY),
+        tuple(joint.name for joint, v in zip(masonry.joints, slides, strict=True) if v > MOVING_VELOCITY),
     )
 
 
 def moving(masonry: Masonry, velocities: Array) -> tuple[str, ...]:
     """Names of the blocks that move in a mechanism, of velocities of all unknowns over the size of their block."""
     speeds = np.abs(velocities).reshape(len(masonry.free), -1).max(axis=1)
-    return tuple(masonry.names[i] for i, v in zip(masonry.free, speeds, strict=True) if v > MOVES * speeds.max())
+    return tuple(
+        masonry.names[i] for i, v in zip(masonry.free, speeds, strict=True) if v > MOVING_VELOCITY * speeds.max()
+    )
 
 
 def weight_of(masonry: Masonry) -> Array:
