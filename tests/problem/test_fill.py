@@ -25,6 +25,24 @@ def test_the_weight_is_that_of_the_earth_up_to_the_ground():
     )
 
 
+def test_earth_rests_on_what_no_block_covers_of_a_face():
+    """A beam of 3 m with a block of 1 m on its middle: earth of 1 m beside the block, and of 0.4 m on it."""
+    blocks = [box(0, 3, 0, 0.5, name="beam"), box(1, 2, 0.5, 1.1, name="block")]
+    masonry = mr.Masonry([box(-2, 5, -1, 0, name="ground", fixed=True), *blocks])
+    loads = mr.Fill(top=1.5, density=1800.0).on(masonry)
+    assert [load.block for load in loads] == ["beam", "block", "beam"]
+    assert [load.at for load in loads] == [pytest.approx(at) for at in ((0.5, 0.5), (1.5, 1.1), (2.5, 0.5))]
+    assert [load.force for load in loads] == pytest.approx([1800 * G * depth for depth in (1.0, 0.4, 1.0)])
+
+
+def test_a_face_below_a_block_bears_no_earth():
+    """A lintel that stands out over the step of the block below it: between them there is air."""
+    step = mr.Compound([box(0, 1, 0, 2), box(1, 2, 0, 1)], name="step")
+    masonry = mr.Masonry([box(-2, 5, -1, 0, name="ground", fixed=True), step, box(0, 1.5, 2, 2.4, name="lintel")])
+    with pytest.raises(ValueError, match="free faces of lintel and step that look upwards one above the other"):
+        mr.Fill(top=3.0).on(masonry)
+
+
 @pytest.mark.parametrize("at", [0.5, 1.2, 1.5, 1.8])
 def test_faces_beside_a_gap_bear_the_whole_load(at):
     """Two blocks 1 m apart, 1 m below the ground, under a load that spreads over the gap between them."""

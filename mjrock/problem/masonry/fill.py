@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
@@ -23,7 +25,9 @@ from ...quantities import (
 from ..wall.effect import Effect, ReportItem
 from ..wall.effects import Load
 from ..wall.tie import Tie
+from .blocks.joints import SHORTEST_JOINT
 from .blocks.polygon import Polygon
+from .blocks.surface import uncovered_ends
 from .masonry import Masonry
 
 LOOKS_UP = 1e-6
@@ -96,7 +100,8 @@ class Fill:
         analysis. Pictures and reports show the fill.
 
         Raises:
-            TypeError, ValueError: for what is not masonry in the plane, or has a face above the ground.
+            TypeError, ValueError: for what is not masonry in the plane, has a face above the ground, or free faces one
+                above the other.
         """
         effects = list[Effect]()
         for face in self._faces(masonry):
@@ -189,25 +194,35 @@ class Fill:
         return end if beyond(end) <= 0 else float(scipy.optimize.brentq(beyond, at, end)) if beyond(at) < 0 else at
 
     def _faces(self, masonry: Masonry) -> list[Bearing]:
-        """The faces that bear the fill, from left to right."""
+        """The faces that bear the fill, without what other blocks cover of them, from left to right."""
         require_kind("masonry", masonry, Masonry)
         if masonry.in_space:
             raise ValueError("masonry is in space; a fill takes masonry in the plane")
-        ends = [pair for joint in masonry.joints for pair in zip((joint.below, joint.above), joint.sides, strict=True)]
-        met, faces = set(ends), list[Bearing]()
+        covered, faces = defaultdict[tuple[int, int], list[Array]](list), list[Bearing]()
+        for joint in masonry.plane_joints:
+            for pair in zip((joint.below, joint.above), joint.sides, strict=True):
+                covered[pair].append(np.array([joint.start, joint.end]))
         for number in masonry.free:
             block = masonry.polygons[number]
             for k, side in enumerate(block.sides):
-                if side.normal[1] > LOOKS_UP and (number, k) not in met:
+                if side.normal[1] > LOOKS_UP:
                     part = block.parts[side.parts[0]]
                     assert isinstance(part, Polygon)  # of masonry in the plane
-                    faces.append(Bearing(masonry.names[number], side.corners[::-1], part.length))
+                    pieces = uncovered_ends(side, covered[number, k], SHORTEST_JOINT * masonry.tolerance)
+                    faces += [Bearing(masonry.names[number], ends[::-1], part.length) for ends in pieces]
         if not faces:
             raise ValueError("masonry has no free face that looks upwards, on which a fill could rest")
         highest = max(float(face.ends[:, 1].max()) for face in faces)
         if not self.top > highest:
             raise ValueError(f"top of the fill = {self.top:g} m is not above {highest:g} m, the highest face")
-        return sorted(faces, key=lambda face: float(face.ends[0, 0]))
+        faces.sort(key=lambda face: float(face.ends[0, 0]))
+        for left, right in pairwise(faces):
+            if left.ends[1, 0] - right.ends[0, 0] > SHORTEST_JOINT * masonry.tolerance:
+                raise ValueError(
+                    f"masonry has free faces of {left.name} and {right.name} that look upwards one above the other; a "
+                    "fill rests on faces beside each other, as it has no earth below a block"
+                )
+        return faces
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ def surface_in_plane(parts: Sequence[Polygon], joined: Sequence[Joint], close: f
             covered[k][side].append(np.array([joint.start, joint.end]))
     pieces, inside = list[Side](), []
     for i, part in enumerate(parts):
-        uncovered = [_uncovered(side, covered[i][j], SHORTEST_JOINT * close) for j, side in enumerate(part.sides)]
+        uncovered = [uncovered_ends(side, covered[i][j], SHORTEST_JOINT * close) for j, side in enumerate(part.sides)]
         inside.append(np.array([not len(some) for some in uncovered]))
         pieces += [
             Side(ends, side.normal, (i,)) for side, some in zip(part.sides, uncovered, strict=True) for ends in some
@@ -80,7 +80,7 @@ def surface_in_space(parts: Sequence[Polyhedron], joined: Sequence[SpaceJoint], 
     return Surface(tuple(merged), corners, tuple(inside))
 
 
-def _uncovered(side: Side, covered: Sequence[Array], shortest: float) -> list[Array]:
+def uncovered_ends(side: Side, covered: Sequence[Array], shortest: float) -> list[Array]:
     """The ends of what is left of an edge, shape (2, 2) each, without what is covered."""
     start, end = side.corners
     length = float(np.linalg.norm(end - start))
