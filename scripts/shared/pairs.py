@@ -1,4 +1,4 @@
-"""A picture of the same cases in two ways."""
+"""A picture of the same cases by two methods."""
 
 from __future__ import annotations
 
@@ -6,24 +6,26 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from mjrock.plotting.style import BLUE
+from mjrock.plotting.style import BLUE, Look
 from scripts.shared.labels import SMALL
 
 GUTTER = 2.2
 """Width of the strips for walls that rest and that overturn, as a factor on the axis [-]."""
 
 
-def pairs(ax: Axes, values: ArrayLike, names: tuple[str, str], limits: tuple[float, float]) -> Axes:
-    """Peak rotations of the same cases in two ways, on logarithmic axes.
+def pairs(ax: Axes, values: ArrayLike, names: tuple[str, str], limits: tuple[float, float], title: str) -> Axes:
+    """Peak rotations of the same cases by two methods, on logarithmic axes.
 
     Peaks below the limits lie in a grey strip at the left or below, of walls that rest, and those above, of walls that
-    overturn, in one at the right or above. Numbers say how many overturn in both ways, and in each of them alone.
+    overturn, in one at the right or above. Two lines below the title count the walls that overturn by both methods and
+    by each of them alone.
 
     Args:
         ax: where to draw.
         values: peaks over alpha, shape (n, 2); infinity stands for overturning.
-        names: of the two ways.
+        names: of the two methods.
         limits: least and largest rotation of a wall that rocks, over alpha.
+        title: what stands above.
     """
     low, high = limits
     given = np.asarray(values, dtype=float)
@@ -39,9 +41,11 @@ def pairs(ax: Axes, values: ArrayLike, names: tuple[str, str], limits: tuple[flo
     limits = low / GUTTER, high * GUTTER
     ax.set(xlim=limits, ylim=limits, aspect="equal", xlabel=x, ylabel=y)
     alone = [int((fell[:, i] & ~fell[:, 1 - i]).sum()) for i in (0, 1)]
-    text = f"{len(given)} runs\noverturned\nin both {int(fell.all(axis=1).sum())}"
-    text += "".join(f"\n{name} alone {count}" for name, count in zip(names, alone, strict=True))
-    ax.text(0.86, 0.14, text, transform=ax.transAxes, fontsize=SMALL, ha="right", va="bottom")
-    ax.text(low / wide, np.sqrt(low * high), "at rest", rotation=90, fontsize=SMALL, ha="center", va="center")
-    ax.text(np.sqrt(low * high), high * wide, "overturned", fontsize=SMALL, ha="center", va="center")
+    counts = f"{len(given)} runs, overturned: both {int(fell.all(axis=1).sum())},\n"
+    counts += ", ".join(f"{name} alone {count}" for name, count in zip(names, alone, strict=True))
+    look: Look = {"textcoords": "offset points", "fontsize": SMALL, "xycoords": "axes fraction"}
+    ax.annotate(counts, (0.5, 1.0), (0, 4), ha="center", va="bottom", **look)
+    ax.set_title(title, fontsize=9, pad=6 + 2.6 * SMALL)
+    ax.text(low / wide, high, "at rest", rotation=90, fontsize=SMALL, ha="center", va="top")
+    ax.text(low, high * wide, "overturned", fontsize=SMALL, ha="left", va="center")
     return ax

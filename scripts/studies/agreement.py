@@ -83,8 +83,8 @@ def drawn(found: Sequence[Mapping[str, Any]]) -> Figure:
     for line, (side_stop, title) in zip(axes, SIDES, strict=True):
         for ax, k_n in zip(line, STIFFNESSES, strict=True):
             _, peaks = suite.in_pairs(of_case(found, side_stop, k_n))
-            pairs(ax, peaks, ("theory", "MuJoCo"), (suite.STILL / 3, 1.5))
-            ax.set_title(f"{title},\n$k_n$ = {power_of_ten(k_n)} N/m³", fontsize=9)
+            heading = f"{title}, $k_n$ = {power_of_ten(k_n)} N/m³"
+            pairs(ax, peaks, ("theory", "MuJoCo"), (suite.STILL / 3, 1.5), heading)
             ax.label_outer()
     return figure
 

@@ -179,10 +179,10 @@ def drawn(pushes: Mapping[str, Array], turned: Array | None) -> Figure:
     look = plotting.STYLES["explicit"] | {"linestyle": "-", "linewidth": 1.3, "label": None}
     plotting.blocks(wall, wall_of(LOADS["WS100"]).masonry, joints=False)
     top = COURSES * COURSE
-    wall.annotate("", (0.5 * LENGTH, top + 0.1), (0.5 * LENGTH, top + 0.5), arrowprops={"arrowstyle": "-|>"})
-    wall.annotate("", (0.0, SPAN), (-0.4, SPAN), arrowprops={"arrowstyle": "-|>"})
-    wall.text(0.55 * LENGTH, top + 0.35, "$N$", fontsize=9)
-    wall.text(-0.4, SPAN + 0.06, "$V$", fontsize=9)
+    vertical = (0.5 * LENGTH, top + 0.35), (0.5 * LENGTH, top + 0.7)
+    for name, (end, start), shift in (("$N$", vertical, (4, -6)), ("$V$", ((0.0, SPAN), (-0.4, SPAN)), (2, 8))):
+        wall.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": "black"})
+        beside(wall, start, name, "black", shift)
     wall.axis("off")
     for name, found in pushes.items():
         test = measured(name)

@@ -121,7 +121,7 @@ def draw_paths(ax: Axes, found: Sequence[dict[str, Path]]) -> None:
     if math.isfinite(late[shown]):
         ax.set_ylim(top=1.1 * ax.get_ylim()[1])
         ax.axvline(late[shown], color="0.5", linewidth=0.8, linestyle=":")
-        ax.text(late[shown], ax.get_ylim()[1], " they part", fontsize=SMALL, va="top")
+        ax.text(late[shown], 0.96, " they part", transform=ax.get_xaxis_transform(), fontsize=SMALL, va="top")
     ax.set(xlabel="$t$ [s]", ylabel="rotation [mrad]")
     ax.set_title(f"{SHOWN}, record {shown}, block {block}", fontsize=9)
 

@@ -25,8 +25,7 @@ def drawn(found: Sequence[Mapping[str, Any]]) -> Figure:
     figure = Figure(figsize=(7.4, 4.3), layout="constrained")
     for ax, solver in zip(figure.subplots(1, 2, sharey=True), suite.SOLVERS, strict=True):
         _, peaks = suite.in_pairs([row for row in found if row["solver"] == solver])
-        pairs(ax, peaks, ("as recorded", "reversed"), (suite.STILL / 3, 1.5))
-        ax.set_title(plotting.STYLES[solver]["label"], fontsize=10)
+        pairs(ax, peaks, ("as recorded", "reversed"), (suite.STILL / 3, 1.5), plotting.STYLES[solver]["label"])
         ax.label_outer()
     return figure
 

@@ -138,7 +138,7 @@ PICTURES = {
     ),
     "overturning_map": mapped,
     "pairs": lambda: plotting.single(
-        lambda ax: pairs(ax, np.column_stack([RISING, RISING**1.2]), ("a", "b"), (0.05, 1.5))
+        lambda ax: pairs(ax, np.column_stack([RISING, RISING**1.2]), ("a", "b"), (0.05, 1.5), "title")
     ),
     "panels": lambda: plotting.panels(
         [("a", lambda ax: plotting.blocks(ax, BOND)), ("b", lambda ax: plotting.ties(ax, both()))]
