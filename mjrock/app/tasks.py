@@ -45,7 +45,7 @@ from .worker import Item, Payload, Send, Task
 MOST_FILES, LONGEST_NAME = 50, 200
 """Most files of a request, and most characters of the name of one."""
 
-OFTEN = 0.15
+MESSAGE_INTERVAL = 0.15
 """Time between two messages on how far a run is [s]."""
 TYPES = {".pdf": "application/pdf", ".html": "text/html", ".csv": "text/csv"}
 """Types of the files of a report."""
@@ -161,7 +161,7 @@ class Sender:
     def __call__(self, progress: Progress) -> None:
         """Take how far the current run is."""
         now = time.monotonic()
-        if now - self.last < OFTEN:
+        if now - self.last < MESSAGE_INTERVAL:
             return
         self.last = now
         part = progress.done / progress.total if progress.total else 0.0

@@ -25,10 +25,10 @@ Item = dict[str, Any]
 Send = Callable[[Item], None]
 Task = Callable[[Payload, Send], None]
 """A function that answers a request in parts, each of which it sends."""
-MOST, WAITING = 4, 2
+MOST_BUSY, MOST_IDLE = 4, 2
 """Most processes at work at once, and most that wait for work."""
-LOOK = 0.1
-"""Time between two looks at whether somebody still waits for the answer [s]."""
+POLL_INTERVAL = 0.1
+"""Time between two checks whether somebody still waits for the answer [s]."""
 
 
 class BusyError(Exception):
@@ -108,7 +108,7 @@ class Worker:
         try:
             self.pipe.send((name, request))
             while True:
-                while not self.pipe.poll(LOOK):
+                while not self.pipe.poll(POLL_INTERVAL):
                     if left():
                         raise ConnectionAbortedError("nobody waits for the answer")
                     if time.monotonic() > end:
@@ -157,7 +157,7 @@ class Team:
 
     def _take(self) -> Worker:
         with self._lock:
-            if self._closed or len(self._busy) >= MOST:
+            if self._closed or len(self._busy) >= MOST_BUSY:
                 raise BusyError
             while self._idle:
                 worker = self._idle.pop()
@@ -173,7 +173,7 @@ class Team:
         with self._lock:
             if worker in self._busy:  # and is not closed with the others
                 self._busy.remove(worker)
-            if done and not self._closed and len(self._idle) < WAITING:
+            if done and not self._closed and len(self._idle) < MOST_IDLE:
                 self._idle.append(worker)
                 return
         with contextlib.suppress(OSError):

@@ -10,18 +10,23 @@ from ..assessment.assessment import Assessment
 from ..command_line import Answer, Status, complain, parser, ruled
 from ..contacts.files import aligned
 from ..reporting.texts import FOUND, Words, languages
-from ..reporting.verdicts import Mechanism, conditions, counted, ranked, required_checks, sentence_of
+from ..reporting.verdicts import (
+    CONDITION_COLUMNS,
+    Mechanism,
+    conditions,
+    counted,
+    ranked,
+    required_checks,
+    sentence_of,
+)
 from ..study.loading.mechanism_check import MechanismCheck
 from .opened import FILE_HELP, MENDABLE, named_checks, opened
-
-HEADS = ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
-"""Columns of the table of conditions."""
 
 
 def table_of(mechanisms: Sequence[Mechanism], words: Words) -> str:
     """The conditions of all mechanisms, that with the least ratio first, and what governs."""
     order = ranked(mechanisms)
-    rows = [[words(f"verdict_{head}") for head in HEADS]]
+    rows = [[words(f"verdict_{head}") for head in CONDITION_COLUMNS]]
     for mechanism in order:
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([mechanism.name * (i == 0), *conditions(verdict, words)])

@@ -91,10 +91,10 @@ def film_of(case: AnyCase) -> WallFilm | MasonryFilm:
 
 
 MOST_FRAMES = 20_000
-COLOURS, COLOURED = 128, 9
-"""Colours of a film, and pictures that they are taken from. With so few, files are three times smaller."""
-HUNDREDTHS = 100
-"""A GIF gives the time of a frame in hundredths of a second, and browsers play below two of them slower [1/s]."""
+COLOURS, SAMPLED_FRAMES = 128, 9
+"""Number of colours of a film, and of the frames that they are taken from. So few make files three times smaller."""
+GIF_TICKS = 100
+"""Resolution of the times of frames in a GIF [1/s]. Browsers play frames of less than two hundredths more slowly."""
 
 WIDE = 8.0
 """Width of a film [inch]."""
@@ -102,15 +102,15 @@ LOWEST, HIGHEST, OTHERWISE = 2.0, 6.0, 4.5
 """Heights of what shows masonry, which fills it in between, and of a film of a wall or of other bodies [inch]."""
 STRIP, CLOCK = 1.3, 0.4
 """Heights of a strip below the bodies and of the text above them [inch]."""
-HELD = 1.0
-"""How much longer than others the last frame is shown, after which a film begins anew [s]."""
+LAST_FRAME_LONGER = 1.0
+"""How much longer than the others the last frame is shown before the film starts again [s]."""
 CODECS = {
     ".mp4": ("h264", "-crf", "26", "-preset", "slow", "-movflags", "+faststart"),  # plays before it is loaded
     ".webm": ("libvpx-vp9", "-crf", "36", "-b:v", "0"),
 }
 """Coder of a film and its options by the ending of the file. At these rates edges of blocks stay sharp."""
-JUST = 1 - 1e-9
-"""Factor on the rate of frames [-]: writers round the milliseconds of a frame down, which must not lose one."""
+RATE_ROUNDING = 1 - 1e-9
+"""Factor on the frame rate [-]. Writers round the milliseconds of a frame down, which must not lose one."""
 
 
 class Stage:
@@ -129,7 +129,7 @@ class Stage:
     def keep_colours(self, update: Update, count: int) -> None:
         """Take the colours of all pictures from some of `count` frames, the first and the last among them."""
         taken = []
-        for frame in sorted(set(np.linspace(0, count - 1, COLOURED, dtype=int).tolist())):
+        for frame in sorted(set(np.linspace(0, count - 1, SAMPLED_FRAMES, dtype=int).tolist())):
             update(frame)
             taken.append(np.asarray(self.drawn()))
         self.palette = Image.fromarray(np.concatenate(taken)).quantize(COLOURS)
@@ -164,7 +164,7 @@ class GifWriter(PillowWriter):
         """Write the file, whose last frame stays a while."""
         first, *more = self._frames  # type: ignore[attr-defined]
         each = int(1000 / self.fps)
-        times = [*[each] * len(more), each + int(1000 * HELD)]
+        times = [*[each] * len(more), each + int(1000 * LAST_FRAME_LONGER)]
         first.save(self.outfile, save_all=True, append_images=more, duration=times if more else times[0], loop=0)
 
 
@@ -261,7 +261,7 @@ def write(figure: Figure, update: Update, count: int, path: Path, writer: GifWri
         for frame in counted(range(count), path.name, "frames"):
             update(frame)
             writer.grab_frame()
-        for _ in range(0 if isinstance(writer, GifWriter) else round(HELD * writer.fps)):
+        for _ in range(0 if isinstance(writer, GifWriter) else round(LAST_FRAME_LONGER * writer.fps)):
             writer.grab_frame()  # a GIF gives its last frame a time instead
     return path
 
@@ -270,8 +270,8 @@ def writer_for(path: Path, fps: float) -> tuple[GifWriter | MovieWriter, float]:
     """The writer for a file of this ending, and how long a frame is shown [s]."""
     match path.suffix.lower():
         case ".gif":
-            interval = max(2, round(HUNDREDTHS / fps)) / HUNDREDTHS
-            return GifWriter(fps=JUST / interval), interval  # type: ignore[arg-type]
+            interval = max(2, round(GIF_TICKS / fps)) / GIF_TICKS
+            return GifWriter(fps=RATE_ROUNDING / interval), interval  # type: ignore[arg-type]
         case ".mp4" | ".webm" as ending:
             if not MovieWriter.isAvailable():
                 needs = f"{ending} needs the program ffmpeg, which is not on the PATH"

@@ -24,7 +24,7 @@ from ..result.bodies import bodies_of, frames_at, without_jumps
 from ..result.response import Response
 from ..result.ties import link_ends
 from .bodies import ends_of
-from .forces import LARGE, LONGEST, NOTHING, DrawnForces, edges_of
+from .forces import LARGE, LEAST_DRAWN, LONGEST, DrawnForces, edges_of
 from .picture import kind, picture
 from .solids import SUNK
 
@@ -189,7 +189,7 @@ class Page:
         """The edges of the joints that lose some of their bond, and since when, where the run kept forces."""
         if self.response.kept_forces is None:
             return
-        lost = np.nan_to_num(self.response.forces.damage[self.samples]) > NOTHING
+        lost = np.nan_to_num(self.response.forces.damage[self.samples]) > LEAST_DRAWN
         for i in np.flatnonzero(lost.any(axis=0)):
             joint = self.response.of_masonry.masonry.joints[i]
             bodies, life = [joint.below, joint.below], [float(self.t[lost[:, i].argmax()]), LAST]

@@ -28,8 +28,8 @@ LONGEST = 0.12
 """Length of the bar of a large force, over the extent of the joints [-]."""
 LARGE = 2.0
 """Force over that of the scale above which a line stays as wide [-]. In a film impacts would hide the rest."""
-NOTHING = 1e-6
-"""Force over that of the scale below which nothing is drawn [-]."""
+LEAST_DRAWN = 1e-6
+"""Least force over that of the scale, and least damage of a joint, that is drawn [-]."""
 
 
 class Strokes(LineCollection):
@@ -89,7 +89,7 @@ class DrawnForces:
     @cached_property
     def widths(self) -> Array:
         """Widths of the cracks of all joints in the frames [m], shape (frames, joints), 0 of those with their bond."""
-        lost = np.nan_to_num(self.forces.damage) > NOTHING
+        lost = np.nan_to_num(self.forces.damage) > LEAST_DRAWN
         return np.asarray(np.where(lost, self.response.crack_widths, 0.0)[self.sample])
 
     @property
@@ -118,7 +118,7 @@ class DrawnForces:
         """
         place, share = self.placed(frame)
         frames, share = self.frames, np.linalg.norm(share, axis=1)
-        joint = np.tile(np.flatnonzero(share > NOTHING), 2)
+        joint = np.tile(np.flatnonzero(share > LEAST_DRAWN), 2)
         body = np.concatenate([side[joint[: len(joint) // 2]] for side in (frames.below, frames.above)])
         joint, body = joint[body >= 0], body[body >= 0]
         count = len(frames.rest)
@@ -134,7 +134,7 @@ class DrawnForces:
         """A bar through the place of each joint's force along it, as long as the force is large: its ends [m], shape
         (n, 2, d), of the joints that press; and the width of all [point]."""
         place, share = self.placed(frame)
-        presses = np.linalg.norm(share, axis=1) > NOTHING
+        presses = np.linalg.norm(share, axis=1) > LEAST_DRAWN
         place, share = place[presses], share[presses]
         length = np.minimum(LARGE / np.linalg.norm(share, axis=1), 1.0)
         half = 0.5 * LONGEST * self.extent * share * length[:, None]
@@ -158,8 +158,8 @@ class DrawnForces:
         of, ends = self.edges
         lost: Array = np.nan_to_num(self.forces.damage[self.sample[frame]])[of]
         open_by = self.widths[frame][of] / max(float(self.widths.max()), 1e-300)
-        ends = (middle[of, None] + np.matmul(ends, axes[of]))[lost > NOTHING]
-        return ends, (CLOSED * lost + (CRACK - CLOSED) * open_by)[lost > NOTHING]
+        ends = (middle[of, None] + np.matmul(ends, axes[of]))[lost > LEAST_DRAWN]
+        return ends, (CLOSED * lost + (CRACK - CLOSED) * open_by)[lost > LEAST_DRAWN]
 
 
 def edges_of(outline: Array) -> Array:

@@ -29,11 +29,11 @@ GREEK = {"alpha": "\u03b1"}
 TAGS = {"_": "msub", "^": "msup", "/": "mfrac"}
 """What a sign between two parts of a formula makes of them."""
 
-LOOK = Path(__file__).with_name("page.css")
+STYLE_SHEET = Path(__file__).with_name("page.css")
 """The style sheet of a page."""
-FORMULAE = LOOK.with_name("formulae.css")
+FORMULAE = STYLE_SHEET.with_name("formulae.css")
 """How WeasyPrint sets formulae, which has no MathML."""
-ROOT = LOOK.with_name("root.svg")
+ROOT = STYLE_SHEET.with_name("root.svg")
 """A root sign as high as what stands under it."""
 
 
@@ -163,7 +163,9 @@ def page(words: Words, title: str, project: str, version: str, parts: Sequence[M
     """The whole page. Title, project and version stand in the margins of paper."""
     margins = {"TITLE": title, "PROJECT": project, "VERSION": version, "PAGE": words("page")}
     look = re.sub(
-        f'"({"|".join(margins)})', lambda found: f'"{_in_style(margins[found[1]])}', LOOK.read_text(encoding="utf-8")
+        f'"({"|".join(margins)})',
+        lambda found: f'"{_in_style(margins[found[1]])}',
+        STYLE_SHEET.read_text(encoding="utf-8"),
     )
     size = '<meta name="viewport" content="width=device-width, initial-scale=1">'
     head = f'<meta charset="utf-8">{size}<title>{html.escape(title)}</title><style>{look}</style>'

@@ -168,7 +168,7 @@ def required_runs(request: Request, words: Words) -> list[Run]:
     Raises:
         TypeError, ValueError: for others, or for none in a report without checks.
     """
-    _, responses, labels, _, bare = request
+    responses, labels = request.responses, request.labels
     if isinstance(responses, Mapping) and labels is not None:
         raise ValueError("labels are for a sequence of responses, and the names of a mapping are those of variants")
     given: list[tuple[str, Response]] = []
@@ -182,7 +182,7 @@ def required_runs(request: Request, words: Words) -> list[Run]:
             require_kind(f"{name}[{i}]", response, Response)
             require_same(f"{name}[{i}]", response, request)
         given += [(variant, response) for response in several]
-    if not given and bare:
+    if not given and request.bare:
         raise ValueError("responses is empty; give responses, or checks or sections, of which a report may be alone")
     answers = [response for _, response in given]
     motions = [DASH if (motion := response.case.motion) is None else motion.name for response in answers]

@@ -32,6 +32,8 @@ REVERSED = ", reversed"
 """How the name of a reversed motion ends."""
 ABREAST = 4
 """Mechanisms whose steps stand beside each other in one table."""
+CONDITION_COLUMNS = ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
+"""Keys of the columns of a table of conditions."""
 
 
 class Mechanism(NamedTuple):
@@ -181,7 +183,6 @@ def _holds_by_one(mechanism: Mechanism) -> bool:
 
 def verdict_table(order: Sequence[Mechanism], words: Words) -> Markup:
     """All conditions of mechanisms."""
-    columns = ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
     rows = []
     for mechanism in order:
         held, count = mechanism.holding, len(mechanism.verdicts)
@@ -189,7 +190,7 @@ def verdict_table(order: Sequence[Mechanism], words: Words) -> Markup:
         name = element("td", element("b", mechanism.name), Markup("<br>"), count_text, rowspan=str(count))
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
-    return table([words(f"verdict_{name}") for name in columns], rows, right=(3, 4, 5))
+    return table([words(f"verdict_{name}") for name in CONDITION_COLUMNS], rows, right=(3, 4, 5))
 
 
 def ranked(mechanisms: Sequence[Mechanism]) -> list[Mechanism]:

@@ -210,7 +210,7 @@ def test_two_windows_are_served_side_by_side(server):
 
 
 def test_more_than_can_be_done_at_once_is_refused_in_words(server, monkeypatch):
-    monkeypatch.setattr("mjrock.app.worker.MOST", 0)
+    monkeypatch.setattr("mjrock.app.worker.MOST_BUSY", 0)
     assert "too much is computed" in parts(server, "echo", {})[0]["error"]
 
 

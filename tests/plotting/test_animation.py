@@ -58,7 +58,7 @@ def test_a_gif_takes_the_time_that_the_motion_took(fps, speed, tmp_path):
             picture.seek(i)
             shown += picture.info["duration"] / 1000
     last = animation.writer_for(path, fps)[1]
-    assert shown == pytest.approx(0.16 + animation.HELD, abs=1.01 * last)
+    assert shown == pytest.approx(0.16 + animation.LAST_FRAME_LONGER, abs=1.01 * last)
     assert list(tmp_path.iterdir()) == [path]
 
 
