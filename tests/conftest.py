@@ -9,6 +9,7 @@ import pytest
 
 import mjrock as mr
 from mjrock import machine
+from mjrock.reporting import markup
 from mjrock.study.compilation import RUNS, carry_out
 from scripts.shared.paper import FIGURE_3, K_N
 
@@ -45,6 +46,14 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.freeze()
         gc.enable()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _coarse_pictures() -> Generator[None, None, None]:
+    """Pictures of reports are drawn and laid out as ever, with a fourth of the dots."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(markup, "DOTS", markup.DOTS / 4)
+        yield
 
 
 LONG = {"test_hostile", "test_wheel", "test_pages", "test_scripts", "test_earthquakes", "test_plausible_masonry"}

@@ -11,9 +11,9 @@ from io import BytesIO
 from pathlib import Path
 from types import ModuleType
 
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from matplotlib.ticker import Formatter
 
 from ..contacts.files import replacing
 from .texts import MINUS, Words
@@ -28,6 +28,9 @@ GREEK = {"alpha": "\u03b1"}
 """Letters that a formula spells."""
 TAGS = {"_": "msub", "^": "msup", "/": "mfrac"}
 """What a sign between two parts of a formula makes of them."""
+
+DOTS = 170
+"""Dots of a picture in a page [1/inch]."""
 
 STYLE_SHEET = Path(__file__).with_name("page.css")
 """The style sheet of a page."""
@@ -133,30 +136,42 @@ def image_of(figure: Figure, words: Words, *, own: bool = False) -> str:
     if words.mark != "." and not own:
         _marked(figure, words)
     file = BytesIO()
-    figure.savefig(file, format="png", dpi=170, metadata={"Software": None})
+    figure.savefig(file, format="png", dpi=DOTS, metadata={"Software": None})
     if own:
         for text, content in zip(texts, was, strict=True):
             text.set_text(content)
     return base64.b64encode(file.getvalue()).decode("ascii")
 
 
+class MarkedTicks(Formatter):
+    """Numbers at the ticks of an axis with the decimal mark of a language; where one is no number, as they were.
+
+    Args:
+        written: what writes them with points.
+        words: the language.
+    """
+
+    def __init__(self, written: Formatter, words: Words) -> None:
+        self.written, self.words = written, words
+
+    def format_ticks(self, values: list[float]) -> list[str]:
+        """The texts of all ticks."""
+        labels = self.written.format_ticks(values)
+        numbers = all(re.fullmatch(rf"[\d.{MINUS}]*", label) for label in labels)
+        return [self.words.marked(label) for label in labels] if numbers else labels
+
+    def get_offset(self) -> str:
+        """The factor of all numbers, and what is to be added to them."""
+        return self.words.marked(self.written.get_offset())
+
+
 def _marked(figure: Figure, words: Words) -> None:
     """Write the decimal mark of the language at the ticks and in the texts of a figure."""
-    figure.draw_without_rendering()
     for ax in figure.axes:
         for text in ax.texts:
             text.set_text(re.sub(r"(?<=\d)\.(?=\d)", words.mark, text.get_text()))
         for axis in (ax.xaxis, ax.yaxis):
-            _mark_ticks(axis, words)
-
-
-def _mark_ticks(axis: Axis, words: Words) -> None:
-    """The same of the ticks of an axis that are numbers."""
-    low, high = sorted(axis.get_view_interval())
-    ticks = [tick for tick in axis.get_majorticklocs() if low <= tick <= high]
-    labels = axis.get_major_formatter().format_ticks(ticks)
-    if any("." in one for one in labels) and all(re.fullmatch(rf"[\d.{MINUS}]*", one) for one in labels):
-        axis.set_ticks(ticks, labels=[words.marked(one) for one in labels])
+            axis.set_major_formatter(MarkedTicks(axis.get_major_formatter(), words))
 
 
 def page(words: Words, title: str, project: str, version: str, parts: Sequence[Markup]) -> str:

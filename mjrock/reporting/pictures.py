@@ -215,9 +215,10 @@ def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | N
         return None
     columns = min(3 if len(given) % 2 else 2, len(given))
     figure, axes = figure_of_panels(len(given), columns, (WIDE / columns, 2.25))
+    named = []
     for ax, (name, check) in zip(axes.flat, given, strict=False):
         ax.locator_params(nbins=5 if columns > 2 else "auto")
-        _curve(ax, check, words)
+        named.append(_curve(ax, check, words))
         ax.set_title(name, fontsize=9)
     marks: list[tuple[Look, str]] = [
         ({"color": "#12406b"}, words("capacity_curve")),
@@ -227,15 +228,31 @@ def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | N
     ]
     handles = [Line2D([], [], **look) for look, _ in marks]
     legend_below(figure, handles, [label for _, label in marks], 4, fontsize=SMALL)
+    layout = figure.get_layout_engine()
+    assert layout is not None
+    layout.execute(figure)
+    for ax, points in zip(axes.flat, named, strict=False):
+        _write_beside(ax, points)
     return figure
 
 
-def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
-    """A capacity curve, the period of each limit state, its capacity on the curve, and the demand at its period."""
+class Point(NamedTuple):
+    """A point of a diagram with its name, displacement [m] and acceleration [m/s2]."""
+
+    name: str
+    d: float
+    a: float
+
+
+def _curve(ax: Axes, check: MechanismCheck, words: Words) -> list[Point]:
+    """A capacity curve, the period of each limit state, its capacity on the curve, and the demand at its period.
+
+    Returns the points that are to be named.
+    """
     ax.plot(check.d, check.a, color="#12406b", linewidth=1.8)
     demands = [(2 * math.pi / state.period) ** 2 * state.demand for state in check.states.values()]
     top = 1.15 * max(float(check.a.max()), *demands)
-    points: list[tuple[str, float, float]] = []
+    points: list[Point] = []
     for name, state in check.states.items():
         held = float(np.interp(state.capacity, check.d, check.a))
         stiff = (2 * math.pi / state.period) ** 2
@@ -244,21 +261,19 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> None:
         colour = HOLDS if state.ratio >= 1 else FAILS
         ax.plot(state.capacity, held, "o", color="0.2", markersize=5, zorder=5)
         ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
-        points += [(name, state.capacity, held), (name, state.demand, stiff * state.demand)]
+        points += [Point(name, state.capacity, held), Point(name, state.demand, stiff * state.demand)]
     far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
     ax.set(xlim=(0, 1.1 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
-    _write_beside(ax, [*points, ("d₀", check.d_0, 0.0)])
     small(ax)
+    return [*points, Point("d₀", check.d_0, 0.0)]
 
 
-def _write_beside(ax: Axes, named: Sequence[tuple[str, float, float]]) -> None:
-    """Write names beside points of a diagram, each where it lies on no other one and on no point if there is such a
-    place."""
-    figure = figure_of(ax)
-    figure.draw_without_rendering()
-    dots = ax.transData.transform([point for _, *point in named])
+def _write_beside(ax: Axes, points: Sequence[Point]) -> None:
+    """Write names beside points of a diagram whose place is known, each where it lies on no other name and on no point
+    if there is such a place."""
+    dots = ax.transData.transform([(d, a) for _, d, a in points])
     taken = [Bbox.from_extents(*(dot - DOT), *(dot + DOT)) for dot in dots]
-    for i, (name, d, a) in enumerate(named):
+    for i, (name, d, a) in enumerate(points):
         tried = []
         for beside, align in PLACES:
             note = ax.annotate(name, (d, a), beside, ha=align, **LABEL)

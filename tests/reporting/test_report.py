@@ -18,6 +18,7 @@ from PIL import Image
 
 import mjrock as mr
 from mjrock.quantities import ratio_text, share_text
+from mjrock.reporting import markup
 from mjrock.reporting.markup import formula
 from mjrock.reporting.texts import DASH, FOUND, Words, languages, texts
 from mjrock.study.loading.dynamic_check import RunMaximum
@@ -73,7 +74,8 @@ def whole(language):
     """The text of a report with all that it may have, its pictures cut out, and its pictures."""
     case = mr.Case(WALL, 0.0, 2.5, motion=MOTION, effects=EFFECTS)
     fit = mr.fit_fragility([1.0, 2.0, 3.0, 4.0, 5.0], [False, True, False, True, True])
-    with TemporaryDirectory() as folder:
+    with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(markup, "DOTS", 170)  # as users have them
         path = mr.report(
             case,
             variants(),

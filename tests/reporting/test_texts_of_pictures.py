@@ -12,7 +12,7 @@ from trees import nodes
 
 import mjrock as mr
 from mjrock.reporting import page
-from mjrock.reporting.pictures import _write_beside, design_drawn, wall_drawn
+from mjrock.reporting.pictures import Point, _write_beside, design_drawn, wall_drawn
 from mjrock.reporting.texts import Words, drawn_patterns, texts
 
 DRAWING = ("bodies", "forces", "histories", "masonry", "solids", "studies", "wall")
@@ -152,6 +152,19 @@ def test_a_picture_of_the_user_is_drawn_in_italian_and_left_as_it_was(figures):
     assert seen == [r"rotazione $\theta$ [rad]"]
 
 
+def test_ticks_keep_their_factor_with_the_decimal_mark_of_the_language():
+    """A motion of less than a thousandth of a millimetre: 0.25 to 2 at the ticks stand for so many 1e-7."""
+    figure = Figure()
+    ax = figure.subplots()
+    ax.plot([0.0, 1.0], [0.0, 2e-7])
+    page.picture(figure, "", ITALIAN)
+    figure.draw_without_rendering()
+    labels = [label.get_text() for label in ax.get_yticklabels()]
+    assert "0,50" in labels
+    assert not any("." in label for label in labels)
+    assert ax.yaxis.get_offset_text().get_text() == "1e\N{MINUS SIGN}7"
+
+
 def overlapping(figure):
     """Pairs of texts of a figure that lie on each other."""
     figure.draw_without_rendering()
@@ -180,7 +193,8 @@ def test_names_of_points_that_are_near_do_not_lie_on_each_other():
     figure = Figure(figsize=(3.5, 2.25))
     ax = figure.subplots()
     ax.set(xlim=(0, 1), ylim=(0, 1))
-    points = [("SLV", 0.5, 0.5), ("SLV", 0.52, 0.45), ("SLC", 0.55, 0.5), ("SLC", 0.56, 0.42), ("d₀", 0.95, 0.0)]
+    places = [("SLV", 0.5, 0.5), ("SLV", 0.52, 0.45), ("SLC", 0.55, 0.5), ("SLC", 0.56, 0.42), ("d₀", 0.95, 0.0)]
+    points = [Point(*place) for place in places]
     _write_beside(ax, points)
     assert [text.get_text() for text in ax.texts] == [name for name, *_ in points]
     assert overlapping(figure) == []
