@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import typing
 from collections.abc import Iterable, Mapping
+from copy import deepcopy
+from functools import cache
 from typing import get_args
 
 import numpy as np
@@ -47,6 +49,12 @@ def toml_schema() -> Schema:
 
 def whole_schema() -> Schema:
     """The same schema for forms and templates: each table has all of its keys, which stand in others too."""
+    return deepcopy(_written_once())
+
+
+@cache
+def _written_once() -> Schema:
+    """The schema of this process, which nobody may change."""
     return SchemaWriter().whole()
 
 

@@ -90,7 +90,7 @@ def test_a_run_writes_a_table_and_a_picture_beside_its_file(here, capsys):
 
 STACK = """
 kind = "MasonryCase"
-duration = 1.0
+duration = 0.7
 [masonry]
 make = "stack"
 k_n = 1e8

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Annotated, NamedTuple, get_args
 
 import numpy as np
@@ -42,12 +43,19 @@ def total_acceleration(accel: Array, h: float, period: float, damping: float) ->
 
 def _answer(accel: Array, h: float, period: float, damping: float, reading: tuple[float, float]) -> Array:
     """What is read from displacement and velocity of an oscillator relative to the ground."""
+    numerator, denominator = _filter_of(h, period, damping, reading)
+    return np.asarray(scipy.signal.lfilter(numerator, denominator, accel))
+
+
+@lru_cache(maxsize=1024)
+def _filter_of(h: float, period: float, damping: float, reading: tuple[float, float]) -> tuple[Array, Array]:
+    """Numerator and denominator of the filter of `_answer`, shape (3,) each: records of one set have many in common."""
     omega = 2 * math.pi / period
     rates = np.array([[0.0, 1.0], [-(omega**2), -2 * damping * omega]])
     system = rates, np.array([[0.0], [-1.0]]), np.array([reading]), np.array([[0.0]])
     A, B, C, D, _ = scipy.signal.cont2discrete(system, h, method="foh")
     upper, lower = scipy.signal.ss2tf(A, B, C, D)
-    return np.asarray(scipy.signal.lfilter(upper[0], lower, accel))
+    return upper[0], lower
 
 
 class Oscillation(NamedTuple):
