@@ -5,15 +5,20 @@ from __future__ import annotations
 import inspect
 import math
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, TypeVar, get_args
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .contacts.checks import *
+from .contacts.checks import (  # passed on to the rest of the package
+    MOST_SAMPLES, NAMED, Array, Flags, Integers, Message, P, Result, Within, alternatives, brief, declared,
+    is_iterable, keep, keep_declared, listed, named, reason, require_array, require_flag, require_kind,
+    require_plain, require_real, require_reals, require_row, require_size, require_text, require_whole,
+    require_within, short_repr, shown, spelt, warn_of, within_ranges,
+)  # fmt: skip
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2], in every solver and in the generated model."""
@@ -65,6 +70,21 @@ def require_stiffness(name: str, value: object) -> float:
     """Return the stiffness of an interface as a float, see `Stiffness` and `require_within`."""
     within: Within = get_args(Stiffness)[1]
     return within.checked(name, value)
+
+
+class OneOf(NamedTuple):
+    """The texts that a field or an argument may be, declared with it: `plumb: Annotated[str, OneOf(PLUMB)]`.
+
+    Args:
+        known: the texts, or a function that gives them.
+    """
+
+    known: Collection[str] | Callable[[], Collection[str]]
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The texts."""
+        return tuple(self.known() if callable(self.known) else self.known)
 
 
 def require_one_of(name: str, value: object, known: Collection[str]) -> str:

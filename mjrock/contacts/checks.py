@@ -209,21 +209,6 @@ class Within(NamedTuple):
             raise ValueError(Message("{cause}, or inf", cause=cause) if self.infinite else cause) from None
 
 
-class OneOf(NamedTuple):
-    """The texts that a field or an argument may be, declared with it: `plumb: Annotated[str, OneOf(PLUMB)]`.
-
-    Args:
-        known: the texts, or a function that gives them.
-    """
-
-    known: Collection[str] | Callable[[], Collection[str]]
-
-    @property
-    def texts(self) -> tuple[str, ...]:
-        """The texts."""
-        return tuple(self.known() if callable(self.known) else self.known)
-
-
 def alternatives(hint: object) -> tuple[object, ...]:
     """The types that a value of a hint may be of, one by one, with those that are noted with it."""
     origin, of = get_origin(hint), get_args(hint)
