@@ -164,7 +164,7 @@ SWAPPED = {
 }
 """Operators, as they are written and what takes their place."""
 EQUIVALENT = {
-    "energy_work.py: work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 1 else given": (
+    "energy_work.py: work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 1 else released": (
         "a row that presses with less than a newton takes nothing that shows"
     ),
     "joint_law.py: force[i], energy[i] = normal_force(law[i], gap[i], 1), stored(law[i], gap[i])": (

@@ -33,7 +33,7 @@ from .notes import (
 )
 from .rebound import MOST_PULL, falling_damping, rebound_damping
 from .row_of_model import Grip, Mixed, ModelRow, unused
-from .solref import STIFF_DASHPOT, WITHIN, inertia_of, longest_represented_step, pair_values, row
+from .solref import WITHIN, RowStep, inertia_of, longest_represented_step, pair_values, row
 from .solver_trial import solver_need
 
 LEAST_RESTITUTION = 1e-3
@@ -522,7 +522,7 @@ def _row(k: float, c: float, mass: float, inverse_weight: float, step: EngineSte
         )
     sound = h * math.sqrt(k / mass) <= UNSOUND
     beta, ringing = (newmark_beta, 0.0) if sound else (max(newmark_beta, 0.5), 1.0)
-    dashpot, inertia = row(k, c, h, inverse_weight, beta, ringing, STIFF_DASHPOT)
+    dashpot, inertia = row(k, c, inverse_weight, RowStep(h, beta, ringing))
     if dashpot < c:
         raise ValueError(
             f"damping c = {c:g} N s/m at timestep = {h:g} s is beyond what MuJoCo represents, {dashpot:.3g} N s/m; "

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar, overload
+from typing import Any, NamedTuple, TypeVar, overload
 
 import numpy as np
 
@@ -95,10 +95,24 @@ def newmark_inertia(k: float, c: float, timestep: float, newmark_beta: float) ->
     return 0.5 * timestep * c + newmark_beta * (timestep * timestep) * k
 
 
+class RowStep(NamedTuple):
+    """How a step integrates a contact row.
+
+    Args:
+        h: length of the step [s].
+        newmark_beta: beta [-].
+        ringing: an extra dashpot in units of h k [-], for steps that do not resolve the contact.
+        overdamped: c h W above which a dashpot is stiff for the step [-].
+    """
+
+    h: float
+    newmark_beta: float = 0.25
+    ringing: float = 0.0
+    overdamped: float = STIFF_DASHPOT
+
+
 @inlined
-def row(
-    k: float, c: float, timestep: float, inverse_weight: float, newmark_beta: float, ringing: float, overdamped: float
-) -> tuple[float, float]:
+def row(k: float, c: float, inverse_weight: float, step: RowStep) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of a contact row that is sound at any step: f = -(k r + dashpot v + inertia a).
 
     They are c and `newmark_inertia` but for three cases:
@@ -112,17 +126,15 @@ def row(
 
     Args:
         k, c: spring [N/m] and dashpot [N s/m].
-        timestep: step h [s].
         inverse_weight: W [1/kg].
-        newmark_beta: beta [-].
-        ringing: an extra dashpot in units of h k [-], for steps that do not resolve the contact.
-        overdamped: c h W from which the dashpot is stiff [-].
+        step: its length and how it integrates the row.
     """
-    strongest = 0.5 * inertia_of(WITHIN[1], inverse_weight) / timestep
-    dashpot = min(c + ringing * timestep * k, strongest)
-    inertia = newmark_inertia(k, dashpot, timestep, newmark_beta)
-    if dashpot * timestep * inverse_weight > overdamped:
-        inertia += 0.5 * timestep * dashpot
+    h = step.h
+    strongest = 0.5 * inertia_of(WITHIN[1], inverse_weight) / h
+    dashpot = min(c + step.ringing * h * k, strongest)
+    inertia = newmark_inertia(k, dashpot, h, step.newmark_beta)
+    if dashpot * h * inverse_weight > step.overdamped:
+        inertia += 0.5 * h * dashpot
     return dashpot, max(inertia, inertia_of(WITHIN[0], inverse_weight))
 
 

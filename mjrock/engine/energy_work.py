@@ -177,9 +177,20 @@ class LedgerRoom(NamedTuple):
         return cls(*frames, *np.empty((3, coordinates)), *np.empty((2, contacts)))
 
 
+class RecordedStep(NamedTuple):
+    """A step of a record: its number, its length and constants, and impratio of the model in it [-]."""
+
+    n: int
+    step: Step
+    impratio: float
+
+
 @inlined
-def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, room: LedgerRoom) -> None:
-    """Write frames and rates of step n of the record."""
+def take_step(
+    points: Points, record: Record, windows: Windows, kinds: StepKinds, n: int, room: LedgerRoom
+) -> RecordedStep:
+    """Write frames, rates and rows of step n of the record into the room, and return the step."""
+    axes, kind = points.places.axes, kinds.kind[n]
     take_frames(record.pose[n], room.frames, axes)
     take_frames(windows.pose[n], room.seam, axes)
     take_frames(windows.pose[min(n + 1, len(record.h) - 1)], room.next_seam, axes)
@@ -187,16 +198,11 @@ def take_step(record: Record, windows: Windows, axes: tuple[int, ...], n: int, r
         room.middle[j] = 0.5 * (record.before[n, j] + record.after[n, j])
         room.acceleration[j] = (record.after[n, j] - record.before[n, j]) / record.h[n]
         room.mean[j] = windows.mean[n, j]
-
-
-@inlined
-def take_rows(points: Points, step: Step, room: LedgerRoom) -> float:
-    """Write dashpot and inertia of the row of every contact in a step, and return impratio [-]."""
-    impratio = math.inf
+    step, impratio = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind]), math.inf
     for i in range(len(room.inertia)):
         room.dashpot[i], room.inertia[i] = row_of(points, i, step)
         impratio = min(impratio, impratio_of(points, i, room.inertia[i], step.h))
-    return impratio
+    return RecordedStep(n, step, impratio)
 
 
 @inlined
@@ -219,7 +225,7 @@ class ContactForces(NamedTuple):
         dashpot: force of its dashpot [N].
         law: force of its row along the normal without friction, negative where it would pull [N].
         row: the same with friction, not below zero. What slides on its row presses more.
-        along: friction along the way of its slip, see `slip_along` [N].
+        along: friction along its slip, see `slip_along` [N].
         coulomb: whether it slides by Coulomb's law, without a row of friction.
     """
 
@@ -232,11 +238,9 @@ class ContactForces(NamedTuple):
 
 
 @inlined
-def contact_in_step(
-    points: Points, record: Record, step: Step, room: LedgerRoom, impratio: float, n: int, i: int
-) -> ContactForces:
-    """Gap and forces of contact i in step n of a record. The room has the frames, rates and rows of that step."""
-    places, inertia = points.places, room.inertia[i]
+def contact_in_step(points: Points, record: Record, recorded: RecordedStep, room: LedgerRoom, i: int) -> ContactForces:
+    """Gap and forces of contact i in a step of a record. The room has the frames, rates and rows of that step."""
+    places, inertia, (n, step, impratio) = points.places, room.inertia[i], recorded
     closed = gap(places, i, room.frames, room.middle, room.acceleration)
     curve = closed.linear
     sprung = step.beta[i] * (step.h * step.h) * places.k[i] * curve  # what Newmark's beta adds to the spring
@@ -260,24 +264,21 @@ def _contact_work(
     """Add up the work of dashpots and friction in the window of each step."""
     places, joint = points.places, points.places.joint
     for n in range(len(record.h)):
-        take_step(record, windows, places.axes, n, room)
-        kind = kinds.kind[n]
-        step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
-        impratio = take_rows(points, step, room)
+        recorded = take_step(points, record, windows, kinds, n, room)
         for i in range(len(joint)):
-            now = contact_in_step(points, record, step, room, impratio, n, i)
-            given = spring_energy(places, i, room.seam) - spring_energy(places, i, room.next_seam)
+            now = contact_in_step(points, record, recorded, room, i)
+            released = spring_energy(places, i, room.seam) - spring_energy(places, i, room.next_seam)
             if not kinds.released_on[i] if n == 0 else now.gap >= 0:
-                work.dashpots[n, joint[i]] += given
+                work.dashpots[n, joint[i]] += released
                 continue
-            # the dashpot of a point that has closed but does not press holds its spring back, and takes what it gives
+            # the dashpot of a point that has closed but does not press takes the energy that the spring releases
             opened = gap(places, i, room.frames, room.mean, room.mean).rate * windows.width[n]
-            work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 0 else given
+            work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 0 else released
             if places.friction[i] > 0:
                 lift = now.row - max(now.law, 0.0)  # what a sliding cone presses on top of the law
                 if points.rubs[i] and lift > 0:
-                    work.impulses[0] += lift * step.h
-                    work.impulses[1] += max(now.law, 0.0) * step.h
-                way = room.middle if now.coulomb else record.after[n]
-                slipped = slip_along(places, i, room.frames, room.mean, way) * windows.width[n]
+                    work.impulses[0] += lift * record.h[n]
+                    work.impulses[1] += max(now.law, 0.0) * record.h[n]
+                slipping = room.middle if now.coulomb else record.after[n]
+                slipped = slip_along(places, i, room.frames, room.mean, slipping) * windows.width[n]
                 work.friction[n] -= now.along * slipped + lift * opened

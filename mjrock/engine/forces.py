@@ -21,14 +21,14 @@ from ..result.bodies import BodyMotion
 from ..result.forces import Forces, KeptForces, forces_of
 from ..result.ties import Plastic, motion_of_ties
 from ..scene.scene import Scene
-from .energy_work import LedgerRoom, contact_in_step, take_rows, take_step
+from .energy_work import LedgerRoom, contact_in_step, take_step
 from .record import Record, StepKinds, Steps, Windows
-from .rows import Points, Step, points_of
+from .rows import Points, points_of
 from .sliding import slip_of
 
 
-class Loads(NamedTuple):
-    """Forces of the contacts on joints and fixed blocks, and the steps and joints that they belong to.
+class JointLoads(NamedTuple):
+    """Forces of the contacts on joints and fixed blocks, with the steps, joints and blocks that they belong to.
 
     Args:
         steps: numbers of the steps, shape (n,).
@@ -51,13 +51,13 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
 
     Args:
         case, scene, steps: the run.
-        t: times of the samples [s].
-        plastic: what ties have yielded.
+        t: times of the samples [s], shape (n,).
+        plastic: what ties have yielded, by tie.
     """
     chosen, sample = np.unique(np.searchsorted(steps.windows.t, t, side="right") - 1, return_inverse=True)
     frames, d = case.rest_geometry.frames, scene.freedom.translations
     room = np.zeros((len(chosen), len(frames.names), scene.freedom.nv)), np.zeros((len(chosen), len(frames.blocks), d))
-    loads = Loads(chosen, scene.sense, frames.fixed, frames.rest, *room)
+    loads = JointLoads(chosen, scene.sense, frames.fixed, frames.rest, *room)
     points = points_of(scene, steps.method)
     _gather(points, steps.record, steps.windows, steps.kinds, LedgerRoom.for_scene(scene), loads)
     pose = steps.pose.reshape(len(steps.t), -1, scene.freedom.nq)
@@ -69,16 +69,15 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
 
 
 @compiled
-def _gather(points: Points, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, into: Loads) -> None:
+def _gather(
+    points: Points, record: Record, windows: Windows, kinds: StepKinds, room: LedgerRoom, into: JointLoads
+) -> None:
     places, axes = points.places, points.places.axes
     for row in range(len(into.steps)):
         n = into.steps[row]
-        take_step(record, windows, axes, n, room)
-        kind = kinds.kind[n]
-        step = Step(record.h[n], kinds.beta[kind], kinds.ringing[kind])
-        impratio = take_rows(points, step, room)
+        recorded = take_step(points, record, windows, kinds, n, room)
         for i in range(len(places.k)):
-            now = contact_in_step(points, record, step, room, impratio, n, i)
+            now = contact_in_step(points, record, recorded, room, i)
             if not kinds.released_on[i] if n == 0 else now.gap >= 0:
                 continue
             meets = where_friction_acts(places, meeting(places, i, room.frames))

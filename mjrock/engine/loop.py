@@ -1,9 +1,10 @@
 """The compiled loops around the engine's steps: of one length, and fitted to the motion.
 
-A step that fits the motion is made in four moves: predict (which contacts will touch), change the step, let the engine
-step, judge (how long the next may be). The rules are in modules of their own: `step_control` (how long), `touches`
-(when), `sticking` (where), `sliding` (friction), and `mjrock.scene.course` (the force of the moving base). The loops
-call `mj_step` by its address and change timestep, rows, friction and velocities in the memory of the engine.
+A step that fits the motion is made in four parts: predict which contacts will touch, change the length of the step, let
+the engine step, and find how long the next step may be. The rules are in modules of their own: `step_control` (length),
+`touches` (their times), `sticking` (edges that friction holds), `sliding` (friction), and `mjrock.scene.course` (the
+force of the moving base). The loops call `mj_step` by its address and change timestep, rows, friction and velocities in
+the memory of the engine.
 """
 
 from __future__ import annotations
@@ -33,8 +34,15 @@ from .sliding import (
     sliding_changed,
     time_to_stop,
 )
-from .step_control import StepControl, approached, judged, step_of, while_loaded, while_taut
-from .sticking import Joints, StepPoses, put_sticking_edges_back
+from .step_control import (
+    StepControl,
+    limited_by_approach,
+    limited_by_loaded_contacts,
+    limited_by_taut_ties,
+    next_length,
+    step_of,
+)
+from .sticking import Joints, StepMotion, put_sticking_edges_back
 from .touches import Openings, Touches, closure_changed, follow_openings, step_to_break, step_to_touch
 
 
@@ -87,9 +95,10 @@ def find_answer(
 
 @inlined
 def add_change(ground_response: GroundResponse, ground: Ground, t: float, h: float, weight: float, to: Array) -> None:
-    """Add to `to` the weight times what the bodies answer to the change of the ground.
+    """Add to `to` the weight times the answer of the bodies to the change of the ground.
 
-    The change is that of its mean acceleration, from the window of the last step to a time h [s] around t [s].
+    It is the change of the mean acceleration of the ground, from the window of the last step to a time h [s] around
+    t [s].
     """
     for d in range(len(ground_response.mean)):
         if len(ground[d].accel) > 0:
@@ -99,7 +108,7 @@ def add_change(ground_response: GroundResponse, ground: Ground, t: float, h: flo
 
 
 @inlined
-def take_mean(ground_response: GroundResponse, ground: Ground, t: float, h: float) -> None:
+def set_mean(ground_response: GroundResponse, ground: Ground, t: float, h: float) -> None:
     """Take the mean acceleration of the ground over the window of a step h [s] at t [s]."""
     for d in range(len(ground_response.mean)):
         ground_response.mean[d] = mean_acceleration(ground[d], t, h)
@@ -107,12 +116,12 @@ def take_mean(ground_response: GroundResponse, ground: Ground, t: float, h: floa
 
 LYING = math.sin(0.5 * ON_ITS_FACE) ** 2
 """x^2 + y^2 of the quaternion of a body of space whose axis that stood at rest lies on the ground [-]."""
-SLACK_FOR_GOOD = 1e9
+SLACK_OF_BROKEN = 1e9
 """Length up to which a tie that has broken is slack [m]."""
 
 
 class Progress(NamedTuple):
-    """What one step hands to the next.
+    """The state of a run that one step hands to the next, and room for what a step computes.
 
     Args:
         acceleration: in the last step, shape (n nv,).
@@ -147,11 +156,26 @@ class Progress(NamedTuple):
         """The state before the first step."""
         places = setting.points.places
         frames, touches = frames_of(memory.pose, places.freedom), Touches.with_room(places, setting.ties)
-        count = len(touches.k)
-        acceleration, rate, change, velocity_now, acceleration_now = np.zeros((5, len(memory.velocity)))
-        rates = acceleration, rate, change, velocity_now, acceleration_now
-        touching = Openings.with_room(count), np.zeros(count, dtype=np.bool_), touches
-        return cls(*rates, frames, frames.copy(), *touching, joints, sliding, GroundResponse.at_start(setting))
+        rates = ("acceleration", "rate", "change", "velocity_now", "acceleration_now")
+        return cls(
+            **{name: np.zeros(len(memory.velocity)) for name in rates},
+            frames=frames,
+            next_frames=frames.copy(),
+            openings=Openings.with_room(len(touches.k)),
+            closed=np.zeros(len(touches.k), dtype=np.bool_),
+            touches=touches,
+            joints=joints,
+            sliding=sliding,
+            ground_response=GroundResponse.at_start(setting),
+        )
+
+
+class StepTimes(NamedTuple):
+    """A step about a pose: time of the pose, and lengths of the step and of the one before, 0 at the release [s]."""
+
+    t: float
+    length: float
+    previous: float
 
 
 class StepClock(NamedTuple):
@@ -182,7 +206,17 @@ class StepClock(NamedTuple):
     @classmethod
     def started(cls, control: StepControl, energy: float) -> StepClock:
         """At the release, with the energy of the release [J]."""
-        return cls(0.0, control.short, 0.0, max(2 * energy, control.least_energy), 0, True, False, 0, False)
+        return cls(
+            t=0.0,
+            allowed=control.short,
+            previous=0.0,
+            energy=max(2 * energy, control.least_energy),
+            calm_steps=0,
+            no_rate=True,
+            unpredictable=False,
+            touches=0,
+            ended=False,
+        )
 
 
 @inlined
@@ -193,8 +227,8 @@ def copy_into(values: Array, to: Array) -> None:
 
 
 @inlined
-def kinetic(masses: Array, products: Array, v: Array) -> float:
-    """Twice the kinetic energy [J], or the same norm of any other rate."""
+def mass_square(masses: Array, products: Array, v: Array) -> float:
+    """Square of rates weighted with the masses: of velocities twice the kinetic energy [J]."""
     total = 0.0
     for j in range(len(v)):
         total += masses[j] * v[j] * v[j]
@@ -225,7 +259,7 @@ def out_of_reach(points: Points, openings: Openings) -> bool:
 
 
 @inlined
-def at_the_pose(memory: EngineArrays, setting: Setting, state: Progress, t: float, previous: float) -> None:
+def update_rates(memory: EngineArrays, setting: Setting, state: Progress, t: float, previous: float) -> None:
     """Velocity at the time of the pose, and acceleration after it, from the last step and its rate of change; gaps and
     slack."""
     for j in range(len(state.rate)):
@@ -235,29 +269,28 @@ def at_the_pose(memory: EngineArrays, setting: Setting, state: Progress, t: floa
         half = 0.5 * previous
         add_change(state.ground_response, setting.ground, t - 0.5 * half, half, half, state.velocity_now)
         add_change(state.ground_response, setting.ground, t + half, previous, 1.0, state.acceleration_now)
-    follow_now(setting, state)
+    update_openings(setting, state)
 
 
 @inlined
-def acceleration_from_engine(memory: EngineArrays, setting: Setting, state: Progress, t: float) -> None:
+def take_acceleration(memory: EngineArrays, setting: Setting, state: Progress, t: float) -> None:
     """Acceleration at the time of the pose, found by the engine, where a contact has just opened or closed."""
     find_acceleration(memory, setting, state.sliding, state.frames, t)
     copy_into(memory.acceleration, state.acceleration_now)
-    follow_now(setting, state)
+    update_openings(setting, state)
 
 
 @inlined
-def follow_now(setting: Setting, state: Progress) -> None:
+def update_openings(setting: Setting, state: Progress) -> None:
     """Bring gaps and slack up to date."""
     places, ties = setting.points.places, setting.ties
     follow_openings(places, ties, state.frames, state.velocity_now, state.acceleration_now, state.openings)
 
 
 @inlined
-def shift_velocity(
-    memory: EngineArrays, setting: Setting, state: Progress, t: float, step: float, previous: float
-) -> None:
+def shift_velocity(memory: EngineArrays, setting: Setting, state: Progress, times: StepTimes) -> None:
     """Move the velocity from half the last step before the pose to half a new one, by the acceleration in between."""
+    t, step, previous = times
     if setting.splits:
         find_answer(memory, setting, state.sliding, state.frames, state.ground_response, t)
     late, middle = 0.5 * (step - previous), 0.25 * (previous + step)
@@ -274,7 +307,7 @@ def set_step(memory: EngineArrays, points: Points, control: StepControl, step: f
 
 
 @inlined
-def before_the_release(memory: EngineArrays, setting: Setting, state: Progress, step: float) -> None:
+def take_first_acceleration(memory: EngineArrays, setting: Setting, state: Progress, step: float) -> None:
     """Acceleration on the ground that is quiet before the release."""
     find_acceleration(memory, setting, state.sliding, state.frames, -step)
     copy_into(memory.acceleration, state.acceleration)
@@ -296,24 +329,25 @@ def release(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Ar
 
 @inlined
 def change_of_acceleration(
-    memory: EngineArrays, setting: Setting, state: Progress, t: float, previous: float, step: float, no_rate: bool
+    memory: EngineArrays, setting: Setting, state: Progress, times: StepTimes, no_rate: bool
 ) -> float:
-    """(h |da|)^2 of the step just made; brings acceleration and rate up to date.
+    """(h |da|)^2 of the step just made [J], which brings acceleration and rate up to date.
 
-    What bodies answer to the ground does not count, but where a contact slides: friction turns with it.
+    The answer of the bodies to the ground counts only where a contact slides, since friction turns with it.
     """
+    t, step, previous = times
     for j in range(len(state.change)):
         state.change[j] = memory.acceleration[j] - state.acceleration[j]
         state.acceleration[j] = memory.acceleration[j]
     slid = any_slid(state.sliding)
-    counts = kinetic(setting.masses, setting.products, state.change) if slid else 0.0
+    square = mass_square(setting.masses, setting.products, state.change) if slid else 0.0
     add_change(state.ground_response, setting.ground, t, step, -1.0, state.change)
-    take_mean(state.ground_response, setting.ground, t, step)
+    set_mean(state.ground_response, setting.ground, t, step)
     for j in range(len(state.change)):
         state.rate[j] = 0.0 if no_rate else state.change[j] / previous
     if not slid:
-        counts = kinetic(setting.masses, setting.products, state.change)
-    return step * step * counts
+        square = mass_square(setting.masses, setting.products, state.change)
+    return step * step * square
 
 
 @inlined
@@ -340,8 +374,17 @@ def settle_pose(
     memory: EngineArrays, setting: Setting, control: StepControl, state: Progress, record: Record, n: int
 ) -> None:
     """Put sticking edges back after step n of the record, take frames of the new pose, and let ties yield and break."""
-    moved = StepPoses(record.pose[n], state.frames, memory.pose, state.next_frames)
-    put_sticking_edges_back(setting.points, control, state.joints, record, n, moved, memory.options[IMPRATIO])
+    motion = StepMotion(
+        step=step_of(control, record.h[n]),
+        impratio=memory.options[IMPRATIO],
+        before=record.before[n],
+        after=record.after[n],
+        from_pose=record.pose[n],
+        pose=memory.pose,
+        from_frames=state.frames,
+        frames=state.next_frames,
+    )
+    put_sticking_edges_back(setting.points, state.joints, motion)
     for body in range(len(state.frames)):
         copy_into(state.next_frames[body], state.frames[body])
     settle_ties(memory, setting, state.frames)
@@ -352,15 +395,37 @@ def settle_ties(memory: EngineArrays, setting: Setting, frames: Array) -> None:
     """Let ties yield and break at a pose. For the engine, one that has broken is slack up to any length."""
     for i in range(len(setting.ties.k)):
         if snaps(setting.ties, i, frames, memory.velocity):
-            memory.plastic[memory.upper[i]] = SLACK_FOR_GOOD
+            memory.plastic[memory.upper[i]] = SLACK_OF_BROKEN
         stretch(setting.ties, i, frames, memory.velocity)
 
 
 @inlined
 def allowed_step(setting: Setting, control: StepControl, openings: Openings, h: float) -> float:
     """The step that the step control allows, shortened for loaded contacts and taut ties."""
-    loaded = while_loaded(control, setting.points, openings, h)
-    return while_taut(control, setting.ties, openings, loaded)
+    loaded = limited_by_loaded_contacts(control, setting.points, openings, h)
+    return limited_by_taut_ties(control, setting.ties, openings, loaded)
+
+
+@inlined
+def step_to_event(
+    setting: Setting, control: StepControl, state: Progress, step: float, allowed: float, least: float
+) -> tuple[float, float]:
+    """The step as long as the motion can be predicted, and the step to a touch or to a tie that breaks in it [s].
+
+    The second is zero where there is none. Touches of less than the energy `least` [J] do not count.
+    """
+    method, openings = control.method, state.openings
+    ahead = step / method.approach if setting.splits else step
+    to_touch = step_to_touch(state.touches, openings, ahead, allowed, least, control.short)
+    if setting.splits:
+        places = setting.points.places
+        stop = time_to_stop(places, state.sliding, state.frames, state.velocity_now, state.acceleration_now)
+        step = min(step, max(method.approach * stop, control.short))
+        step, to_touch = limited_by_approach(control, step, to_touch)
+    to_break = step_to_break(setting.ties, openings, step, control.short)
+    if to_break > 0 and not 0 < to_touch < to_break:
+        to_touch = to_break
+    return step, to_touch
 
 
 @compiled
@@ -373,58 +438,51 @@ def fitted_loop(
     """
     t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended = clock
     points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
-    axes, method, on_moving_ground = points.places.axes, control.method, setting.splits
+    axes, method = points.places.axes, control.method
     if previous == 0:
         set_step(memory, points, control, allowed)
-        before_the_release(memory, setting, state, allowed)
+        take_first_acceleration(memory, setting, state, allowed)
     while n < len(record.t) and not ended:
-        at_the_pose(memory, setting, state, t, previous)
+        update_rates(memory, setting, state, t, previous)
         if closure_changed(points.places, openings, state.closed) and previous > control.short and not no_rate:
-            acceleration_from_engine(memory, setting, state, t)
+            take_acceleration(memory, setting, state, t)
             allowed, calm_steps, no_rate = control.short, 0, True
 
         # predict
-        step = allowed_step(setting, control, openings, allowed)
-        least = method.faded * control.accuracy * energy
-        to_touch = 0.0
+        step, to_touch = allowed_step(setting, control, openings, allowed), 0.0
         if not unpredictable:
-            ahead = step / method.approach if on_moving_ground else step
-            to_touch = step_to_touch(state.touches, openings, ahead, allowed, least, control.short)
-            if on_moving_ground:
-                stop = time_to_stop(points.places, sliding, state.frames, state.velocity_now, state.acceleration_now)
-                step, to_touch = approached(control, min(step, max(method.approach * stop, control.short)), to_touch)
-            to_break = step_to_break(setting.ties, openings, step, control.short)
-            if to_break > 0 and not 0 < to_touch < to_break:
-                to_touch = to_break
+            least = method.faded * control.accuracy * energy
+            step, to_touch = step_to_event(setting, control, state, step, allowed, least)
         if to_touch > 0:
             step = to_touch
 
         # step
+        times = StepTimes(t, step, previous)
         if previous == 0:
             set_step(memory, points, control, step)
             release(memory, setting, sliding, state.frames, state.velocity_now)
             copy_into(memory.acceleration, state.acceleration)
         elif step != previous:
-            shift_velocity(memory, setting, state, t, step, previous)
+            shift_velocity(memory, setting, state, times)
             set_step(memory, points, control, step)
         record.t[n], record.h[n] = t, step
         make_step(memory, setting, sliding, state.frames, record, n)
         ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points, openings)
         sliding_turned = sliding_changed(sliding)
-        change = change_of_acceleration(memory, setting, state, t, previous, step, no_rate or sliding_turned)
-        moves = kinetic(setting.masses, setting.products, memory.velocity)
-        change /= max(energy, method.faster * moves)
+        change = change_of_acceleration(memory, setting, state, times, no_rate or sliding_turned)
+        twice_kinetic = mass_square(setting.masses, setting.products, memory.velocity)
+        change /= max(energy, method.faster * twice_kinetic)
         unpredictable = change > method.abrupt * method.abrupt
         settle_pose(memory, setting, control, state, record, n)
 
-        # judge
+        # length of the next step
         t, previous = t + step, step
         if to_touch > 0:
-            energy = max(moves, control.least_energy)
+            energy = max(twice_kinetic, control.least_energy)
             touches += 1
             allowed, calm_steps, no_rate = control.short, 0, True
         else:
-            allowed, calm_steps = judged(control, step, math.inf if no_rate else change, calm_steps)
+            allowed, calm_steps = next_length(control, step, math.inf if no_rate else change, calm_steps)
             no_rate = False
         n += 1
     return (t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended), n
@@ -432,12 +490,14 @@ def fitted_loop(
 
 @compiled
 def fixed_loop(
-    memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, record: Record, first: int, h: float
+    memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, record: Record, first: int
 ) -> tuple[bool, int]:
-    """Steps of length h from number `first` until the record is full, the duration is over, or a body has fallen.
+    """Steps of the length that is set, from number `first` until the record is full, the duration is over, or a body
+    has fallen.
 
     Returns whether the run is over, and how many steps they were.
     """
+    h = memory.options[TIMESTEP]
     last = max(1, round(setting.duration / h))
     for n in range(len(record.t)):
         if sliding.coulomb or len(setting.dampers.law) > 0:

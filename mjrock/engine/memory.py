@@ -29,7 +29,7 @@ LIBRARIES = {"linux": "libmujoco.so.*", "darwin": "libmujoco.*.dylib", "win32": 
 
 
 class EngineArrays(NamedTuple):
-    """What a compiled loop needs of a model and its data.
+    """The functions of the engine, and the arrays of a model and its data, that a compiled loop uses.
 
     Args:
         step, forward, finish: `mj_step`, `mj_forward` and `mj_step2`, which take the two addresses.
@@ -42,7 +42,7 @@ class EngineArrays(NamedTuple):
         rows: of all pairs.
         dimension: of all pairs, 1 without friction and 3 with it, shape (m,).
         plastic: state of the tendons that yield: between which lengths each is slack [m], shape (2 yielding,).
-        upper: where the upper length of each tendon is in it; 0 for one that does not yield.
+        upper: index in `plastic` of the upper length of each tendon; 0 for one that does not yield.
     """
 
     step: Any
@@ -69,30 +69,26 @@ class EngineArrays(NamedTuple):
         Raises:
             RuntimeError: if the options are not where they should be, or the library is not found.
         """
-        step, forward, finish, accelerate = functions()
         return cls(
-            step,
-            forward,
-            finish,
-            accelerate,
-            model._address,
-            data._address,
-            _options(model),
-            data.qpos,
-            data.qvel,
-            data.qacc,
-            data.qacc_warmstart,
-            data.qfrc_applied,
-            ContactRows(model.pair_solref, model.pair_solimp, model.pair_solreffriction),
-            model.pair_dim,
-            data.plastic,
-            model.tendon_plasticadr.astype(np.int64) + 1,
+            **functions(),
+            model=model._address,
+            data=data._address,
+            options=_options(model),
+            pose=data.qpos,
+            velocity=data.qvel,
+            acceleration=data.qacc,
+            guess=data.qacc_warmstart,
+            applied=data.qfrc_applied,
+            rows=ContactRows(model.pair_solref, model.pair_solimp, model.pair_solreffriction),
+            dimension=model.pair_dim,
+            plastic=data.plastic,
+            upper=model.tendon_plasticadr.astype(np.int64) + 1,
         )
 
 
 @cache
-def functions() -> tuple[Any, ...]:
-    """`mj_step`, `mj_forward`, `mj_step2` and `mj_forwardSkip` of the library that the bindings use.
+def functions() -> dict[str, Any]:
+    """The functions of `EngineArrays` by their names there, of the library that the bindings use.
 
     Raises:
         RuntimeError: if the library is not found, or is not the one of the bindings.
@@ -103,12 +99,17 @@ def functions() -> tuple[Any, ...]:
     version = library.mj_versionString().decode()
     if version != mujoco.mj_versionString():
         raise RuntimeError(f"{path} is version {version} and not {mujoco.mj_versionString()}; reinstall mujoco")
-    two = (ctypes.c_void_p, ctypes.c_void_p)
-    entries = library.mj_step, library.mj_forward, library.mj_step2, library.mj_forwardSkip
-    for function in entries:
-        function.argtypes, function.restype = two, None
-    library.mj_forwardSkip.argtypes = (*two, ctypes.c_int, ctypes.c_int)
-    return entries
+    found = {
+        "step": library.mj_step,
+        "forward": library.mj_forward,
+        "finish": library.mj_step2,
+        "accelerate": library.mj_forwardSkip,
+    }
+    addresses = (ctypes.c_void_p, ctypes.c_void_p)
+    for name, function in found.items():
+        function.argtypes = (*addresses, ctypes.c_int, ctypes.c_int) if name == "accelerate" else addresses
+        function.restype = None
+    return found
 
 
 def library_file(folder: Path) -> Path:
@@ -128,7 +129,7 @@ def library_file(folder: Path) -> Path:
 
 
 @cache
-def places() -> dict[str, int]:
+def option_offsets() -> dict[str, int]:
     """Bytes from the start of MuJoCo's mjOption to its timestep, impratio and gravity, by its own description.
 
     Raises:
@@ -168,10 +169,10 @@ def _type(described: Any) -> Any:
 
 def _options(model: mujoco.MjModel) -> Array:
     """A view of timestep and impratio in the memory of the model, once it is proved to be one."""
-    at = places()
+    at = option_offsets()
     address = model.opt.gravity.ctypes.data - at["gravity"]
-    held = np.ctypeslib.as_array((ctypes.c_ubyte * at["gravity"]).from_address(address))
-    view = np.ndarray(2, float, held, at["timestep"], strides=(at["impratio"] - at["timestep"],))
+    content = np.ctypeslib.as_array((ctypes.c_ubyte * at["gravity"]).from_address(address))
+    view = np.ndarray(2, float, content, at["timestep"], strides=(at["impratio"] - at["timestep"],))
     before = model.opt.timestep, model.opt.impratio
     proved = True
     for probe in ((0.123, 45.6), (7.89e-5, 0.321)):

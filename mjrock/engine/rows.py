@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import inlined
-from ..contacts.solref import body_weight, pair_values, row
+from ..contacts.solref import RowStep, body_weight, pair_values, row
 from ..geometry.kinematics import Places
 from ..method import METHOD, Method
 from ..quantities import Array, Flags, frozen
@@ -116,7 +116,8 @@ class ContactRows(NamedTuple):
 def row_of(points: Points, i: int, step: Step) -> tuple[float, float]:
     """Dashpot [N s/m] and inertia [kg] of the row of contact i in a step, see `solref.row`."""
     stiff, places = points.overdamped[i] if step.ringing[i] > 0 else points.resolved[i], points.places
-    return row(places.k[i], places.c[i], step.h, points.weight[i], step.beta[i], step.ringing[i], stiff)
+    own = RowStep(step.h, step.beta[i], step.ringing[i], stiff)
+    return row(places.k[i], places.c[i], points.weight[i], own)
 
 
 @inlined

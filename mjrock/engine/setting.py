@@ -20,7 +20,7 @@ from .rows import Points, points_of
 
 
 class Setting(NamedTuple):
-    """What does not change in a run, but for ties that yield.
+    """The arrays of a run that no step changes, but for ties that yield and the forces of dampers.
 
     Args:
         points: the contacts.
@@ -51,10 +51,18 @@ class Setting(NamedTuple):
     @classmethod
     def of_run(cls, scene: Scene, course: Course, method: Method = METHOD, *, refines: bool = True) -> Setting:
         """That of a run, whose ties yield in it alone."""
-        ties, damping = scene.ties._replace(reach=scene.ties.reach.copy()), np.zeros(len(scene.links.damped.names))
-        splits = len(scene.bodies.names) == 1 and any(len(shaking.accel) for shaking in course.ground)
-        acting = scene.dampers, damping, refines, splits, float(course.duration)
-        return cls(points_of(scene, method), ties, scene.bodies.masses, scene.bodies.products, course.ground, *acting)
+        return cls(
+            points=points_of(scene, method),
+            ties=scene.ties._replace(reach=scene.ties.reach.copy()),
+            masses=scene.bodies.masses,
+            products=scene.bodies.products,
+            ground=course.ground,
+            dampers=scene.dampers,
+            damping=np.zeros(len(scene.links.damped.names)),
+            refines=refines,
+            splits=len(scene.bodies.names) == 1 and any(len(shaking.accel) for shaking in course.ground),
+            duration=float(course.duration),
+        )
 
 
 @inlined
@@ -69,21 +77,21 @@ def add_gyroscopic_correction(memory: EngineArrays, setting: Setting, axes: tupl
     v, a = memory.velocity, memory.acceleration
     for body in range(len(setting.products)):
         x, y, z = 6 * body + 3, 6 * body + 4, 6 * body + 5
-        kept = (v[x], v[y], v[z])
-        now = (v[x] + ahead * a[x], v[y] + ahead * a[y], v[z] + ahead * a[z])
-        lacking = minus(
-            gyroscopic(setting.masses, setting.products, body, kept),
-            gyroscopic(setting.masses, setting.products, body, now),
+        before = (v[x], v[y], v[z])
+        at_pose = (v[x] + ahead * a[x], v[y] + ahead * a[y], v[z] + ahead * a[z])
+        correction = minus(
+            gyroscopic(setting.masses, setting.products, body, before),
+            gyroscopic(setting.masses, setting.products, body, at_pose),
         )
-        increase(memory.applied[x:], lacking)
+        increase(memory.applied[x:], correction)
 
 
 @inlined
 def push(memory: EngineArrays, setting: Setting, frames: Array, t: float) -> None:
     """Write the forces of the moving ground and of the dampers in the step that is set into the applied forces.
 
-    A damper acts at the velocity of the pose. That of the text, which a fixed step has, acts half a step earlier. So it
-    is with the gyroscopic moments of bodies of space.
+    A damper acts at the velocity of the pose where `setting.refines`; a damper of the model text, which a fixed step
+    has, acts at the velocity half a step earlier. The same holds for the gyroscopic moments of bodies of space.
     """
     dampers, axes, ahead = setting.dampers, setting.points.places.axes, 0.5 * memory.options[TIMESTEP]
     if len(dampers.law) > 0:

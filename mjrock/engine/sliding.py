@@ -6,8 +6,8 @@ m_n = h c / 2 + beta h^2 k it presses the bodies apart by mu (c / 2 + beta h k) 
 
 So a contact that slides has no friction row. The force of friction, mu times the normal force and against the slip, is
 applied to the two bodies. The normal force follows from the contact law at the accelerations of the step, which the
-engine finds with the force in place. One such look at the step is most often enough, because the normal force hardly
-depends on friction within a step. A contact whose slip friction stops within the step gets its row back, which stops
+engine finds with the force in place. One such iteration is most often enough, because the normal force hardly depends
+on friction within a step. A contact whose slip friction stops within the step gets its row back, which stops
 and then holds it.
 """
 
@@ -27,14 +27,14 @@ from ..quantities import Array, Flags
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
 from .rows import Points
 from .setting import Setting, push
-from .touches import ROUNDING
+from .touches import ROUNDING_OF_GAP
 
 SMOOTH, ROUGH = 1, 3
 """MuJoCo's dimension of a contact without and with rows of friction."""
 SLOWEST = 1e-300
 """Slip below which it has no direction [m/s]."""
 STAGE_VELOCITY = 2
-"""mjSTAGE_VEL: positions and velocities are as in the last look, and only forces have changed."""
+"""mjSTAGE_VEL: positions and velocities are as before, and only forces have changed."""
 
 
 class Sliding(NamedTuple):
@@ -89,7 +89,7 @@ def slipping(places: Places, i: int, meets: Meeting, frames: Array, v: Array) ->
 
 
 @inlined
-def turned_to(sliding: Sliding, i: int, direction: Vector) -> float:
+def set_direction(sliding: Sliding, i: int, direction: Vector) -> float:
     """Write the direction of contact i, and return by how much it has changed [-]."""
     change = minus(direction, vector(sliding.direction, i, direction))
     put(sliding.direction[i], direction)
@@ -106,7 +106,7 @@ def update_direction(
     """
     kept = relative_velocity(places, i, meets, frames, memory.velocity)
     ahead = scaled(0.5 * memory.options[TIMESTEP], relative_velocity(places, i, meets, frames, memory.acceleration))
-    return turned_to(sliding, i, slip_of(meets.normal, plus(kept, ahead)).direction)
+    return set_direction(sliding, i, slip_of(meets.normal, plus(kept, ahead)).direction)
 
 
 @inlined
@@ -131,7 +131,7 @@ def find_sliding(memory: EngineArrays, points: Points, sliding: Sliding, frames:
         if not points.rubs[i]:
             continue
         meets = where_friction_acts(places, meeting(places, i, frames))
-        if meets.gap > -ROUNDING * places.radius:
+        if meets.gap > -ROUNDING_OF_GAP * places.radius:
             continue
         mu, now = places.friction[i], slipping(places, i, meets, frames, memory.velocity)
         inertia = inertia_of(memory.rows.solimp[i, 0], points.weight[i])
@@ -141,7 +141,7 @@ def find_sliding(memory: EngineArrays, points: Points, sliding: Sliding, frames:
         if beyond and mu * stopping > sliding.method.neglected * pressing:
             sliding.slides[i] = any_slides = True
             sliding.force[i] = -math.copysign(mu * pressing, now.speed)
-            turned_to(sliding, i, now.direction)
+            set_direction(sliding, i, now.direction)
             memory.dimension[i] = SMOOTH
     return any_slides
 
@@ -159,12 +159,12 @@ def apply_friction(memory: EngineArrays, setting: Setting, sliding: Sliding, fra
 
 
 @inlined
-def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, n: int) -> tuple[bool, bool]:
-    """Bring the friction of what slides up to date with the accelerations that the engine has found in look n.
+def update_friction(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, n: int) -> tuple[bool, bool]:
+    """Bring the friction of what slides up to date with the accelerations that the engine found in iteration n.
 
     A contact gets its row back where friction stops its slip within the step, or where no force is found: beyond some
     coefficient friction raises the normal force by more than that gives, and the contact jams. Returns whether another
-    look is needed, and whether a row was given back.
+    iteration is needed, and whether a row was given back.
     """
     change, turning, largest, places, method = 0.0, 0.0, 0.0, points.places, sliding.method
     for i in range(len(sliding.slides)):
@@ -193,7 +193,7 @@ def look(memory: EngineArrays, points: Points, sliding: Sliding, frames: Array, 
 
 @inlined
 def slide(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Array, t: float) -> bool:
-    """Whether contacts slide; the applied forces then hold their friction, and the engine all but the accelerations."""
+    """Whether contacts slide. The applied forces then have their friction, and the engine lacks the accelerations."""
     if not (sliding.coulomb and find_sliding(memory, setting.points, sliding, frames)):
         return False
     rows_changed = True
@@ -205,7 +205,7 @@ def slide(memory: EngineArrays, setting: Setting, sliding: Sliding, frames: Arra
             memory.accelerate(memory.model, memory.data, STAGE_VELOCITY, 1)
         for j in range(len(memory.guess)):
             memory.guess[j] = memory.acceleration[j]
-        again, rows_changed = look(memory, setting.points, sliding, frames, n)
+        again, rows_changed = update_friction(memory, setting.points, sliding, frames, n)
         if not again:
             break
     if rows_changed:

@@ -13,7 +13,7 @@ The lengths follow from the contacts, the rocking and an error estimate:
 * on a shaken base a touch is approached: a step ends before it, but for the last short ones;
 * a loaded contact stays loaded: no step moves a loaded point by more than the share `stays` of its penetration through
   the velocities alone;
-* no step is longer than a taut tie is integrated well in, and a tie that can yield is met at its greatest length.
+* no step is longer than a taut tie allows for its integration, and a step ends where a tie that can yield is longest.
 
 The constants are those of `mjrock.method`.
 """
@@ -36,7 +36,7 @@ from ..scene.scene import Scene
 from .rows import Points, Step, inverse_weights, points_of
 from .touches import Openings
 
-LIGHTEST = {2: 6, 3: 7}
+LARGEST_INVERSE_MASS = {2: 6, 3: 7}
 """Largest inverse mass that a contact of a block may feel, over W, in the plane and in space [-]: 4/m at the edge of a
 slender block, and 7/m at the corner of a thin plate."""
 
@@ -73,21 +73,21 @@ class StepControl(NamedTuple):
         rocking = math.sqrt(method.longest * accuracy) / scene.rocking_frequency
         represented = min(longest_represented_step(k, W) for k, W in zip(scene.contacts.k, weight, strict=True))
         stable = method.stable / max(scene.tie_frequency, 1e-300)
-        slowing = damping_rate(scene.dampers, scene.potential.unmoved, scene.bodies.principal)
-        slowed = math.sqrt(method.dashpot * accuracy) / max(slowing, 1e-300)
-        longest = max(short, min(rocking, represented, stable, slowed, *course.sampling))
+        decay = damping_rate(scene.dampers, scene.potential.unmoved, scene.bodies.principal)
+        of_dampers = math.sqrt(method.dashpot * accuracy) / max(decay, 1e-300)
+        longest = max(short, min(rocking, represented, stable, of_dampers, *course.sampling))
         damped = scene.contacts.c / (longest * scene.contacts.k) if scene.limits.damped_joints else 0.0
         ringing = np.where(scene.bears > 0, np.maximum(method.ringing_borne - damped, 0.0), method.ringing_open)
         return cls(
-            short,
-            longest,
-            math.sqrt(method.taut * accuracy) / scene.tie_frequency if scene.links.sprung.names else math.inf,
-            accuracy,
-            2 * float(scene.rest_energies[2]),
-            scene.highest_frequency,
-            np.stack([np.full_like(ringing, 1 / 12), (1 + ringing**2) / 4]),
-            np.stack([np.zeros_like(ringing), ringing]),
-            method,
+            short=short,
+            longest=longest,
+            taut=math.sqrt(method.taut * accuracy) / scene.tie_frequency if scene.links.sprung.names else math.inf,
+            accuracy=accuracy,
+            least_energy=2 * float(scene.rest_energies[2]),
+            frequency=scene.highest_frequency,
+            beta=np.stack([np.full_like(ringing, 1 / 12), (1 + ringing**2) / 4]),
+            ringing=np.stack([np.zeros_like(ringing), ringing]),
+            method=method,
         )
 
 
@@ -99,13 +99,13 @@ def short_step(scene: Scene, accuracy: float, method: Method = METHOD) -> float:
     """
     spring = min(method.most, math.sqrt(method.short * accuracy)) / scene.highest_frequency
     strongest = float(np.max(scene.contacts.c * inverse_weights(scene)))
-    lightest = LIGHTEST[scene.freedom.translations] * strongest
-    dashpot = math.sqrt(method.dashpot * accuracy) / lightest if strongest else math.inf
+    decay = LARGEST_INVERSE_MASS[scene.freedom.translations] * strongest
+    dashpot = math.sqrt(method.dashpot * accuracy) / decay if strongest else math.inf
     return min(spring, max(dashpot, spring / 8))
 
 
 @inlined
-def resolves(control: StepControl, h: float) -> int:
+def kind_of_step(control: StepControl, h: float) -> int:
     """Which row of `control.beta` and `control.ringing` a step of length h takes: 0 where it resolves the contacts,
     otherwise 1."""
     return 0 if h * control.frequency < control.method.smooth else 1
@@ -114,13 +114,13 @@ def resolves(control: StepControl, h: float) -> int:
 @inlined
 def step_of(control: StepControl, h: float) -> Step:
     """The step of length h."""
-    kind = resolves(control, h)
+    kind = kind_of_step(control, h)
     return Step(h, control.beta[kind], control.ringing[kind])
 
 
 @inlined
-def while_loaded(control: StepControl, points: Points, openings: Openings, h: float) -> float:
-    """The step h [s], shortened to what every loaded contact stays loaded in, but not below the short step.
+def limited_by_loaded_contacts(control: StepControl, points: Points, openings: Openings, h: float) -> float:
+    """The step h [s], shortened so that every loaded contact stays loaded in it, but not below the short step.
 
     h^2/2 |g2| <= stays |g| for every loaded point, with g its gap and g2 what the velocities alone make of its second
     rate.
@@ -133,8 +133,8 @@ def while_loaded(control: StepControl, points: Points, openings: Openings, h: fl
 
 
 @inlined
-def while_taut(control: StepControl, ties: Ties, openings: Openings, h: float) -> float:
-    """The step h [s], shortened to what a taut tie is integrated well in, but not below the short step.
+def limited_by_taut_ties(control: StepControl, ties: Ties, openings: Openings, h: float) -> float:
+    """The step h [s], shortened so that a taut tie is integrated well in it, but not below the short step.
 
     It also ends where a tie that can yield is longest. A tie yields up to its greatest length, which a long step would
     pass by.
@@ -151,11 +151,11 @@ def while_taut(control: StepControl, ties: Ties, openings: Openings, h: float) -
 
 
 @inlined
-def approached(control: StepControl, step: float, to_touch: float) -> tuple[float, float]:
+def limited_by_approach(control: StepControl, step: float, to_touch: float) -> tuple[float, float]:
     """The step on moving ground, and the step to a touch, zero where none is met in it [s].
 
-    A touch that is predicted from the motion of now comes earlier or later as the ground goes on, the more the further
-    ahead it is. So one that is not near is approached only.
+    A touch that is predicted from the present motion comes earlier or later as the ground goes on, the more so the
+    further ahead it is. A step therefore ends before a touch that is not near.
     """
     if to_touch > control.method.near * control.short:
         return min(step, control.method.approach * to_touch), 0.0
@@ -163,14 +163,14 @@ def approached(control: StepControl, step: float, to_touch: float) -> tuple[floa
 
 
 @inlined
-def judged(control: StepControl, h: float, change: float, calm: int) -> tuple[float, int]:
-    """The length of the next step, and how many steps in a row have been calm.
+def next_length(control: StepControl, h: float, change: float, calm: int) -> tuple[float, int]:
+    """The length of the next step [s], and how many steps in a row have changed little.
 
     Args:
         control: the limits.
-        h: the step [s].
+        h: length of the step just made [s].
         change: (h |da| / |v|)^2 of the step just made [-].
-        calm: the steps that were calm before it.
+        calm: how many steps in a row before it changed little.
     """
     tolerated = (control.method.change * control.accuracy) * (control.method.change * control.accuracy)
     if change > tolerated:

@@ -61,9 +61,8 @@ def fitted_steps(
 
     record = on_plates(_recorded(engine, course.duration, advance), scene)
     kind = (record.h * control.frequency >= method.smooth).astype(np.int64)
-    return Steps(
-        record, StepKinds(control.beta, control.ringing, kind, released_on), clock.touches, method, places.freedom
-    )
+    kinds = StepKinds(control.beta, control.ringing, kind, released_on)
+    return Steps(record, kinds, touches=clock.touches, method=method, freedom=places.freedom)
 
 
 def fixed_steps(
@@ -92,7 +91,7 @@ def fixed_steps(
 
     def advance(record: Record) -> tuple[int, float, bool]:
         nonlocal done
-        ended, n = fixed_loop(memory, setting, sliding, frames, record, done, timestep)
+        ended, n = fixed_loop(memory, setting, sliding, frames, record, done)
         done += n
         return n, done * timestep, ended
 
@@ -103,8 +102,10 @@ def fixed_steps(
 
 
 def _recorded(engine: Engine, duration: float, advance: Callable[[Record], tuple[int, float, bool]]) -> Record:
-    """The steps of a run, made a chunk at a time. `advance` fills a record: how many steps, the time, whether it
-    ends."""
+    """The steps of a run, made a chunk at a time.
+
+    `advance` fills a record, and returns how many steps it has, the time [s], and whether the run is over.
+    """
     chunks, t, ended = [], 0.0, False
     with Bar("MuJoCo", "s", duration) as bar:
         while not ended:

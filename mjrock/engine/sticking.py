@@ -1,4 +1,4 @@
-"""Sticking: after each step, the body on a sticking joint is shifted back by what the deepest point has drifted.
+"""Sticking: after each step, the body on a sticking joint is shifted back by the drift of its deepest point.
 
 Two things move an edge that friction holds. A friction row of MuJoCo stops the slip that a point has in the geometry at
 the start of a step. In a step h a wall that turns at omega about its toe moves the toe by a term that the row does not
@@ -28,10 +28,8 @@ from ..geometry.kinematics import Meeting, Places, depth, gap, meeting, tangents
 from ..geometry.vectors import Vector, dot, minus, spun
 from ..quantities import Array, Integers
 from ..scene.scene import Scene
-from .record import Record
 from .rows import Points, Step, row_of
 from .sliding import slipping
-from .step_control import StepControl, step_of
 
 EQUAL = 1e-6
 """Difference of two penetrations, over the lesser one, that is rounding, as of the two ends of an edge in space [-]."""
@@ -62,7 +60,7 @@ class Joints(NamedTuple):
         }
         order: list[int] = []
         if all(len(bodies) == 1 for bodies in below.values()):
-            order = sorted(below, key=lambda body: _height(body, below))
+            order = sorted(below, key=lambda body: _bodies_below(body, below))
         of = np.full(len(scene.contacts.k), -1)
         for joint, body in enumerate(order):
             of[rough & (scene.contacts.body == body)] = joint
@@ -70,7 +68,7 @@ class Joints(NamedTuple):
         return cls(of, np.array(order, dtype=np.int64), np.full(len(order), -1), np.zeros((len(order), count)))
 
 
-def _height(body: int, below: dict[int, set[int]]) -> int:
+def _bodies_below(body: int, below: dict[int, set[int]]) -> int:
     """How many bodies a body stands on, one on the other."""
     count = 0
     while body in below and count <= len(below):
@@ -79,34 +77,46 @@ def _height(body: int, below: dict[int, set[int]]) -> int:
     return count
 
 
-class StepPoses(NamedTuple):
-    """Poses and frames before and after a step, of which those after it may still be changed."""
+class StepMotion(NamedTuple):
+    """The motion of the bodies in a step, of which pose and frames after it may still be changed.
 
+    Args:
+        step: its length and constants.
+        impratio: of the model in it [-].
+        before, after: velocities half a step before and after its pose, shape (n nv,).
+        from_pose, pose: before and after it, shape (n nq,).
+        from_frames, frames: those of these poses.
+    """
+
+    step: Step
+    impratio: float
+    before: Array
+    after: Array
     from_pose: Array
-    from_frames: Array
     pose: Array
+    from_frames: Array
     frames: Array
 
 
 @inlined
-def sticks(points: Points, i: int, frames: Array, before: Array, after: Array, step: Step, impratio: float) -> bool:
-    """Whether point i was pressed and did not slide in the step from `before` to `after`, the velocities around it.
+def sticks(points: Points, i: int, motion: StepMotion) -> bool:
+    """Whether point i was pressed and did not slide in a step.
 
     The friction row stops the slip with the force that this takes, as long as the force is within the cone.
     """
-    places = points.places
+    places, frames, before, after, h = points.places, motion.from_frames, motion.before, motion.after, motion.step.h
     start = gap(places, i, frames, before, before)
     if start.value >= 0:
         return False
-    dashpot, inertia = row_of(points, i, step)
-    acceleration = (gap(places, i, frames, after, after).rate - start.rate) / step.h
+    dashpot, inertia = row_of(points, i, motion.step)
+    acceleration = (gap(places, i, frames, after, after).rate - start.rate) / h
     pressing = -(places.k[i] * start.value + dashpot * start.rate + inertia * acceleration)
     slip = slipping(places, i, where_friction_acts(places, meeting(places, i, frames)), frames, after).speed
-    return pressing > 0 and abs(impratio * inertia * slip / step.h) <= places.friction[i] * pressing
+    return pressing > 0 and abs(motion.impratio * inertia * slip / h) <= places.friction[i] * pressing
 
 
 @inlined
-def deepest(places: Places, joints: Joints, j: int, frames: Array) -> int:
+def deepest_point(places: Places, joints: Joints, j: int, frames: Array) -> int:
     """The deepest point of a joint, -1 where none is closed.
 
     On an edge in space two points are equally deep but for rounding. It is the one that stuck.
@@ -121,7 +131,7 @@ def deepest(places: Places, joints: Joints, j: int, frames: Array) -> int:
 
 
 @inlined
-def presses(points: Points, body: int, frames: Array) -> bool:
+def presses_unloaded(points: Points, body: int, frames: Array) -> bool:
     """Whether a contact of a body is closed that bears nothing while the scene is at rest."""
     places = points.places
     for i in range(len(places.body)):
@@ -132,30 +142,30 @@ def presses(points: Points, body: int, frames: Array) -> bool:
 
 
 @inlined
-def rolled(places: Places, i: int, meets: Meeting, tangent: Vector, moved: StepPoses) -> float:
-    """How far point i moves along one way of its face in a step without slip, as the bodies turn [m]."""
+def rolling_distance(places: Places, i: int, meets: Meeting, tangent: Vector, motion: StepMotion) -> float:
+    """How far point i moves along a tangent of its face in a step without slip, as the bodies turn [m]."""
     axes, face = places.axes, places.face_body[i]
-    turned = turn_between(moved.from_pose, moved.pose, places.body[i], axes)
+    turn = turn_between(motion.from_pose, motion.pose, places.body[i], axes)
     if face >= 0:
-        turned = minus(turned, turn_between(moved.from_pose, moved.pose, face, axes))
-    along = turned[0] if len(tangent) == 2 else dot(tangent, spun(turned, meets.normal))
-    return -0.25 * along * (depth(places, i, moved.from_frames) + depth(places, i, moved.frames))
+        turn = minus(turn, turn_between(motion.from_pose, motion.pose, face, axes))
+    along = turn[0] if len(tangent) == 2 else dot(tangent, spun(turn, meets.normal))
+    return -0.25 * along * (depth(places, i, motion.from_frames) + depth(places, i, motion.frames))
 
 
 @inlined
 def shift(frames: Array, body: int, tangent: Vector, distance: float) -> None:
-    """Shift a body along a way."""
+    """Shift a body along a tangent by a distance [m]."""
     for axis in range(len(tangent)):
         frames[body, axis] += distance * tangent[axis]
 
 
 @inlined
-def put_back(points: Points, joints: Joints, j: int, i: int, moved: StepPoses) -> None:
+def put_back(points: Points, joints: Joints, j: int, i: int, motion: StepMotion) -> None:
     """Shift the body on joint j along its face so that point i, its deepest and sticking, is where it stuck.
 
     i is -1 where the deepest point does not stick. Joints, and pose and frames after the step, are brought up to date.
     """
-    places, frames, body = points.places, moved.frames, joints.body[j]
+    places, frames, body = points.places, motion.frames, joints.body[j]
     first, start = joints.stuck[j] != i, coordinates(places.axes) * body
     joints.stuck[j] = i
     if i < 0:
@@ -166,27 +176,24 @@ def put_back(points: Points, joints: Joints, j: int, i: int, moved: StepPoses) -
         if first:
             joints.anchor[j, k] = place
         else:
-            joints.anchor[j, k] += rolled(places, i, meets, tangents[k], moved)
+            joints.anchor[j, k] += rolling_distance(places, i, meets, tangents[k], motion)
             shift(frames, body, tangents[k], joints.anchor[j, k] - place)
     if first:
         return
-    pressed = presses(points, body, frames)
+    pressed = presses_unloaded(points, body, frames)
     for axis in range(len(places.axes)):
         if pressed:
-            frames[body, axis] = moved.pose[start + axis]
+            frames[body, axis] = motion.pose[start + axis]
         else:
-            moved.pose[start + axis] = frames[body, axis]
+            motion.pose[start + axis] = frames[body, axis]
 
 
 @inlined
-def put_sticking_edges_back(
-    points: Points, control: StepControl, joints: Joints, record: Record, n: int, moved: StepPoses, impratio: float
-) -> None:
-    """Take the frames of the new pose, with sticking edges put back to where they stuck, after step n of the record."""
-    step = step_of(control, record.h[n])
-    take_frames(moved.pose, moved.frames, points.places.axes)
+def put_sticking_edges_back(points: Points, joints: Joints, motion: StepMotion) -> None:
+    """Take the frames of the pose after a step, with sticking edges put back to where they stuck."""
+    take_frames(motion.pose, motion.frames, points.places.axes)
     for j in range(len(joints.body)):
-        i = deepest(points.places, joints, j, moved.frames)
-        if i >= 0 and not sticks(points, i, moved.from_frames, record.before[n], record.after[n], step, impratio):
+        i = deepest_point(points.places, joints, j, motion.frames)
+        if i >= 0 and not sticks(points, i, motion):
             i = -1
-        put_back(points, joints, j, i, moved)
+        put_back(points, joints, j, i, motion)

@@ -17,7 +17,7 @@ from ..compiled import inlined
 from ..geometry.kinematics import Places, Ties, opening
 from ..quantities import Array, Flags
 
-ROUNDING = 1e-6
+ROUNDING_OF_GAP = 1e-6
 """Gap below which a contact has neither opened nor closed, over the radius of the contact spheres [-], which goes with
 the size of the bodies: some 1e-12 m. A joint that bears nothing rests at a gap of zero."""
 
@@ -69,7 +69,10 @@ def follow_openings(places: Places, ties: Ties, frames: Array, v: Array, a: Arra
         openings.linear[i], openings.swept[i] = now.linear, now.swept
         if i >= contacts and ties.squeeze[i - contacts] > 0:
             side = -1.0 if now.value > 0 else 1.0
-            openings.value[i], openings.rate[i] = side * now.value - 2 * ROUNDING * places.radius, side * now.rate
+            openings.value[i], openings.rate[i] = (
+                side * now.value - 2 * ROUNDING_OF_GAP * places.radius,
+                side * now.rate,
+            )
             openings.linear[i], openings.swept[i] = side * now.linear, side * now.swept
 
 
@@ -79,14 +82,14 @@ def closure_changed(places: Places, openings: Openings, closed: Flags) -> bool:
     changed = False
     for i in range(len(closed)):
         now = openings.value[i] < 0
-        if now != closed[i] and abs(openings.value[i]) > ROUNDING * places.radius:
+        if now != closed[i] and abs(openings.value[i]) > ROUNDING_OF_GAP * places.radius:
             closed[i] = now
             changed = True
     return changed
 
 
 @inlined
-def predict(touches: Touches, openings: Openings, now: float, h: float, least: float) -> float:
+def predict_touches(touches: Touches, openings: Openings, now: float, h: float, least: float) -> float:
     """Find the touches of a step that matter, and return the time until the first one [s], or infinity.
 
     A touch that is ignored is noticed up to a step h too late. It then misplaces k (v h)^2 / 4 in the spring and
@@ -114,7 +117,7 @@ def predict(touches: Touches, openings: Openings, now: float, h: float, least: f
 
 
 @inlined
-def hardest(touches: Touches, latest: float) -> float:
+def hardest_touch(touches: Touches, latest: float) -> float:
     """Of the touches up to a time, the time of the one with the highest closing speed [s]."""
     when, fastest = 0.0, -1.0
     for i in range(len(touches.time)):
@@ -128,12 +131,12 @@ def step_to_touch(touches: Touches, openings: Openings, now: float, h: float, le
     """Length of a step that ends half a short step after the touch that falls within it, or zero if none does [s].
 
     Of several touches in one short window, the hardest is the start of the window. `now` is the step that is about to
-    be made, `short` the short step [s], and the other arguments are those of `predict`.
+    be made, `short` the short step [s], and the other arguments are those of `predict_touches`.
     """
-    first = predict(touches, openings, now, h, least)
+    first = predict_touches(touches, openings, now, h, least)
     if first == math.inf:
         return 0.0
-    return hardest(touches, first + 0.5 * short) + 0.5 * short
+    return hardest_touch(touches, first + 0.5 * short) + 0.5 * short
 
 
 @inlined

@@ -150,8 +150,8 @@ def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
     return ~np.isin(labels[list(masonry.free)], list(fixed))
 
 
-AT_ONCE = 1_000_000
-"""Most gaps that are held in memory at once."""
+GAPS_AT_ONCE = 1_000_000
+"""Most gaps of joints that are in memory at once."""
 
 
 class JointRecord(NamedTuple):
@@ -183,26 +183,26 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
         t: times of the steps or samples [s], shape (steps,).
         pose: at these times, shape (steps, n nq).
     """
-    masonry, points, count = case.masonry, JointPoints.of(case, scene), len(case.masonry.joints)
+    masonry, points, count = case.masonry, JointPoints.of_case(case, scene), len(case.masonry.joints)
     widths = np.array([joint.width for joint in masonry.joints])
     shift = displacements(case.supports, t, scene.freedom.translations)
     opening, sliding, deepest = np.zeros(count), np.zeros(count), 0.0
     off, parted = np.zeros((2, len(pose), count), dtype=bool)
-    size = max(1, AT_ONCE // max(1, count))
+    size = max(1, GAPS_AT_ONCE // max(1, count))
     for first in range(0, len(pose), size):
         some = slice(first, first + size)
-        seen = _joint_gaps(scene, points, pose[some], shift[some])
-        far, off[some] = _slid_off(case.rest_geometry, seen.slid)
-        parted[some] = (far > widths) | (seen.nearest > PARTED * widths)
-        opening, sliding = np.maximum(opening, seen.opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
-        deepest = max(deepest, -float(seen.nearest.min()))
+        gaps = _joint_gaps(scene, points, pose[some], shift[some])
+        far, off[some] = _slid_off(case.rest_geometry, gaps.slid)
+        parted[some] = (far > widths) | (gaps.nearest > PARTED * widths)
+        opening, sliding = np.maximum(opening, gaps.opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
+        deepest = max(deepest, -float(gaps.nearest.min()))
     return JointRecord(opening, sliding, deepest, off, parted)
 
 
 def slips(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Array:
     """How far the block above each joint has slid on the one below [m], shape (steps, joints, d)."""
     shift = displacements(case.supports, t, scene.freedom.translations)
-    return _joint_gaps(scene, JointPoints.of(case, scene), pose, shift).slid
+    return _joint_gaps(scene, JointPoints.of_case(case, scene), pose, shift).slid
 
 
 def displacements(supports: Sequence[Support], t: Array, d: int) -> Array:
@@ -241,11 +241,11 @@ class JointPoints(NamedTuple):
     support: Integers
 
     @classmethod
-    def of(cls, case: MasonryCase, scene: Scene) -> JointPoints:
+    def of_case(cls, case: MasonryCase, scene: Scene) -> JointPoints:
         """The points of a case."""
         masonry, places, joint = case.masonry, scene.places, scene.places.joint
         frames = frames_of(scene.at_rest.ravel(), places.freedom)
-        at_rest = np.array([_along(places, i, meeting(places, i, frames), frames) for i in range(len(joint))])
+        at_rest = np.array([_along_face(places, i, meeting(places, i, frames), frames) for i in range(len(joint))])
         number = {masonry.names.index(support.block): i for i, support in enumerate(case.supports)}
         below = np.array([number.get(each.below, -1) for each in masonry.joints])  # a block above is never fixed
         support = np.where(places.face_body < 0, below[joint], -1)
@@ -264,21 +264,21 @@ class JointGaps(NamedTuple):
 def _joint_gaps(scene: Scene, points: JointPoints, pose: Array, shift: Array) -> JointGaps:
     """The joints at poses, shape (steps, n nq), with supports that are displaced [m], (steps, supports, d)."""
     size = len(pose), len(scene.contacts.joints)
-    seen = JointGaps(np.empty(size), np.empty(size), np.empty((*size, scene.freedom.translations)))
+    gaps = JointGaps(np.empty(size), np.empty(size), np.empty((*size, scene.freedom.translations)))
     pose, shift = np.ascontiguousarray(pose), np.ascontiguousarray(shift)
-    _look(scene.places, points, pose, shift, scene.freedom.frames(len(scene.bodies.names)), seen)
-    return seen
+    _write_gaps(scene.places, points, pose, shift, scene.freedom.frames(len(scene.bodies.names)), gaps)
+    return gaps
 
 
 @inlined
-def _along(places: Places, i: int, meets: Meeting, frames: Array) -> Vector:
+def _along_face(places: Places, i: int, meets: Meeting, frames: Array) -> Vector:
     """Position of point i along its face, from the origin of the face, in the axes of the face [m]."""
     along, face = minus(meets.offset, scaled(meets.gap, meets.normal)), places.face_body[i]
     return along if face < 0 else plus(along, inverse_rotation_change(frames, face, along))
 
 
 @inlined
-def _met(places: Places, i: int, frames: Array, shift: Array, support: int) -> Meeting:
+def _meeting_of_moved(places: Places, i: int, frames: Array, shift: Array, support: int) -> Meeting:
     """Where point i and its face meet, which a support may have moved."""
     meets = meeting(places, i, frames)
     if support < 0:
@@ -288,26 +288,26 @@ def _met(places: Places, i: int, frames: Array, shift: Array, support: int) -> M
 
 
 @compiled
-def _look(places: Places, points: JointPoints, pose: Array, shift: Array, frames: Array, seen: JointGaps) -> None:
+def _write_gaps(places: Places, points: JointPoints, pose: Array, shift: Array, frames: Array, gaps: JointGaps) -> None:
     """Write gaps and slips of joints, see `_joint_gaps`; `frames` is room for those of a pose."""
-    opened, nearest, slid = seen
+    opened, nearest, slid = gaps
     for n in range(len(pose)):
         take_frames(pose[n], frames, places.axes)
         for j in range(opened.shape[1]):
             opened[n, j], nearest[n, j] = 0.0, np.inf
         for i in range(len(places.joint)):
-            meets, j = _met(places, i, frames, shift[n], points.support[i]), places.joint[i]
+            meets, j = _meeting_of_moved(places, i, frames, shift[n], points.support[i]), places.joint[i]
             opened[n, j] = max(opened[n, j], meets.gap)
             if meets.gap < nearest[n, j]:
                 nearest[n, j] = meets.gap
-                along = _along(places, i, meets, frames)
+                along = _along_face(places, i, meets, frames)
                 for axis in range(len(along)):
                     slid[n, j, axis] = points.sign[i] * (along[axis] - points.at_rest[i, axis])
 
 
 OVERHANG_SAMPLES = 200
 """Most times at which overhangs are computed."""
-OVERHANG_WORTH_SAYING = 1e-3
+LEAST_OVERHANG = 1e-3
 """Overhang that is reported, over the size of the block [-]."""
 VERTICAL_FACE = 1e-9
 """Vertical part of the normal of a joint up to which it carries no weight [-]."""
@@ -326,23 +326,24 @@ def past_support(
         slips: from the numbers of some steps, how far the block above each joint has slid on the one below [m], shape
             (steps, joints, d).
     """
-    masonry, centroids, found = geometry.masonry, geometry.centroids, {}
+    masonry, overhangs, slid = geometry.masonry, dict[str, float](), None
     faces = [below.corners[:, :-1] for below, _ in geometry.faces]
-    looks = np.unique(np.linspace(0, len(motion.off) - 1, OVERHANG_SAMPLES).astype(int))
+    sampled = np.unique(np.linspace(0, len(motion.off) - 1, OVERHANG_SAMPLES).astype(int))
     for block, beds in _beds(masonry).items():
-        weight = centroids[block, :-1]
-        drawn = _beyond(weight, np.concatenate([faces[j] for j in beds]))
-        least = max(drawn, 0.0) + OVERHANG_WORTH_SAYING * masonry.blocks[block].size
+        centroid = geometry.centroids[block, :-1]
+        drawn = _beyond(centroid, np.concatenate([faces[j] for j in beds]))
+        least = max(drawn, 0.0) + LEAST_OVERHANG * masonry.blocks[block].size
         if drawn + motion.sliding[beds].max() < least:
             continue
-        slid = slips(looks)[:, beds, :-1]
-        far = least
-        for some, off in zip(slid, motion.off[looks][:, beds], strict=True):
-            on = [faces[j] - slip for j, slip, gone in zip(beds, some, off, strict=True) if not gone]
-            far = max(far, _beyond(weight, np.concatenate(on))) if on else far
-        if far > least:
-            found[masonry.names[block]] = far - max(drawn, 0.0)
-    return found
+        slid = slips(sampled) if slid is None else slid
+        farthest = least
+        for offsets, off in zip(slid[:, beds, :-1], motion.off[sampled][:, beds], strict=True):
+            support = [faces[j] - offset for j, offset, left in zip(beds, offsets, off, strict=True) if not left]
+            if support:
+                farthest = max(farthest, _beyond(centroid, np.concatenate(support)))
+        if farthest > least:
+            overhangs[masonry.names[block]] = farthest - max(drawn, 0.0)
+    return overhangs
 
 
 def overhang_message(past: Mapping[str, float]) -> str:

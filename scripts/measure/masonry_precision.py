@@ -141,7 +141,7 @@ def finely(case: mr.MasonryCase, timestep: float) -> Motion:
         engine.release(course)
         sliding, frames = Sliding.at_start(setting.points, coulomb=False), frames_of(engine.memory.pose)
         while not ended:
-            ended, n = fixed_loop(engine.memory, setting, sliding, frames, engine.room, done, timestep)
+            ended, n = fixed_loop(engine.memory, setting, sliding, frames, engine.room, done)
             theta = engine.room.pose[:n, 2::3]
             peaks = np.maximum(peaks, np.abs(theta).max(axis=0))
             samples.append(theta[-done % every :: every].copy())

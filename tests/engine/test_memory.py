@@ -34,9 +34,9 @@ def test_the_options_are_where_they_should_be(model):
 def test_options_elsewhere_are_refused_and_nothing_is_written(model, monkeypatch):
     options = (ctypes.c_char * 512).from_address(model.opt.gravity.ctypes.data - 56)
     before = bytes(options)
-    right = memory.places()
+    right = memory.option_offsets()
     for name, wrong in (("gravity", 48), ("gravity", 64), ("gravity", 512), ("impratio", 16), ("timestep", 8)):
-        monkeypatch.setattr(memory, "places", lambda there=right | {name: wrong}: there)
+        monkeypatch.setattr(memory, "option_offsets", lambda there=right | {name: wrong}: there)
         with pytest.raises(RuntimeError, match=r"does not keep opt\.timestep and opt\.impratio where"):
             EngineArrays.from_model(model, mujoco.MjData(model))
     assert bytes(options) == before
@@ -44,7 +44,7 @@ def test_options_elsewhere_are_refused_and_nothing_is_written(model, monkeypatch
 
 def test_places_are_those_of_the_description(monkeypatch):
     """Of the one that MuJoCo 4.0 has, and of another with an integer and arrays before, and impratio not beside."""
-    assert memory.places() == {"timestep": 0, "impratio": 8, "gravity": 56}
+    assert memory.option_offsets() == {"timestep": 0, "impratio": 8, "gravity": 56}
     number, whole = ValueType("mjtNum"), ValueType("int")
     types = {"flag": whole, "impratio": number, "table": ArrayType(number, (2, 3)), "flags": ArrayType(whole, (3,))}
     types |= {"timestep": number, "gravity": ArrayType(number, (3,))}
@@ -62,13 +62,13 @@ def described(monkeypatch, types):
     """The places for a description with fields of these names and types."""
     fields = [StructFieldDecl(name, kind, "") for name, kind in types.items()]
     monkeypatch.setitem(STRUCTS, "mjOption", StructDecl("mjOption", "struct mjOption_", fields))
-    return memory.places.__wrapped__()
+    return memory.option_offsets.__wrapped__()
 
 
 def test_a_missing_description_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco.introspect.structs", None)
     with pytest.raises(RuntimeError, match=r"lacks its module mujoco\.introspect\.structs.*reinstall mujoco"):
-        memory.places.__wrapped__()
+        memory.option_offsets.__wrapped__()
 
 
 def test_a_step_by_address_is_a_step(model):

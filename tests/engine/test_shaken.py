@@ -5,7 +5,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.engine.model import engine_of
-from mjrock.engine.step_control import StepControl, approached
+from mjrock.engine.step_control import StepControl, limited_by_approach
 from mjrock.engine.stepping import fitted_steps
 from mjrock.method import METHOD
 from mjrock.scene.course import Shaking, ground_velocity
@@ -41,10 +41,10 @@ def test_touches_are_approached(two_sided, contacts):
     scene = mr.scene_of(two_sided, contacts)
     control = StepControl.from_scene(scene, wall_course(two_sided, scene), 1e-3)
     near = METHOD.near * control.short
-    assert approached(control, 1.0, 10 * near) == (METHOD.approach * (10 * near), 0.0)
-    assert approached(control, 5 * near, 10 * near) == (5 * near, 0.0)
-    assert approached(control, near, 0.9 * near) == (near, 0.9 * near)
-    assert approached(control, 0.5 * near, 0.9 * near) == (0.5 * near, 0.0)
+    assert limited_by_approach(control, 1.0, 10 * near) == (METHOD.approach * (10 * near), 0.0)
+    assert limited_by_approach(control, 5 * near, 10 * near) == (5 * near, 0.0)
+    assert limited_by_approach(control, near, 0.9 * near) == (near, 0.9 * near)
+    assert limited_by_approach(control, 0.5 * near, 0.9 * near) == (0.5 * near, 0.0)
 
 
 @pytest.mark.parametrize("seed", [0, 1])

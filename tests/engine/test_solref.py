@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mjrock as mr
-from mjrock.contacts.solref import IMPEDANCE_RANGE, pair_values, row
+from mjrock.contacts.solref import IMPEDANCE_RANGE, RowStep, pair_values, row
 from mjrock.engine.rows import ContactRows, Step, points_of, set_rows
 from mjrock.method import METHOD
 
@@ -55,14 +55,14 @@ def test_only_a_constant_impedance_has_a_stiffness(solimp):
 
 def test_a_row_is_newmarks_where_it_can_be():
     """The row of the text and of the loop is `contact_parameters`, where nothing has to be held back."""
-    dashpot, inertia = row(K, C, H, W, 0.25, 0.0, METHOD.overdamped)
+    dashpot, inertia = row(K, C, W, RowStep(H))
     p = mr.contact_parameters(K, C, timestep=H, inverse_weight=W, newmark_beta=0.25)
     assert (dashpot, inertia) == (C, p.inertia)
     assert pair_values(K, dashpot, inertia, W) == (*p.solref, p.impedance)
 
 
 def test_the_least_inertia_is_just_not_clamped():
-    _, inertia = row(1e8, 0.0, 1e-7, W, 0.25, 0.0, METHOD.overdamped)
+    _, inertia = row(1e8, 0.0, W, RowStep(1e-7))
     assert pair_values(1e8, 0.0, inertia, W)[2] == pytest.approx(IMPEDANCE_RANGE[0], rel=1e-6)
     with pytest.raises(ValueError, match="impedance"):
         mr.contact_parameters(1e8, 0.0, timestep=1e-7, inverse_weight=W, newmark_beta=0.25)
@@ -72,16 +72,16 @@ def test_a_stiff_dashpot_acts_at_the_end_of_the_step():
     """Above `overdamped` it takes h c for h c / 2, and never more than half the inertia that MuJoCo represents."""
     for share, inertia_over_hc in ((0.99, 0.5), (1.01, 1.0)):
         c = share * METHOD.overdamped / (H * W)
-        dashpot, inertia = row(1.0, c, H, W, 0.25, 0.0, METHOD.overdamped)
+        dashpot, inertia = row(1.0, c, W, RowStep(H, overdamped=METHOD.overdamped))
         assert dashpot == c
         assert inertia == pytest.approx(inertia_over_hc * H * c, rel=1e-6)
-    dashpot, inertia = row(1.0, 1e30, H, W, 0.25, 0.0, METHOD.overdamped)
+    dashpot, inertia = row(1.0, 1e30, W, RowStep(H))
     assert inertia == pytest.approx(H * dashpot)
     assert pair_values(1.0, dashpot, inertia, W)[2] < IMPEDANCE_RANGE[1]
 
 
 def test_ringing_is_an_extra_dashpot():
-    dashpot, inertia = row(K, C, H, W, 0.5, 0.3, METHOD.overdamped)
+    dashpot, inertia = row(K, C, W, RowStep(H, newmark_beta=0.5, ringing=0.3))
     assert dashpot == pytest.approx(C + 0.3 * H * K)
     assert inertia == pytest.approx(H * dashpot / 2 + 0.5 * H**2 * K)
 

@@ -8,9 +8,16 @@ import pytest
 from scenes import changed, course, two_blocks
 
 import mjrock as mr
-from mjrock.engine.rows import points_of
-from mjrock.engine.step_control import StepControl, judged, resolves, short_step, while_loaded, while_taut
-from mjrock.engine.sticking import Joints, StepPoses, deepest, presses, rolled
+from mjrock.engine.rows import Step, points_of
+from mjrock.engine.step_control import (
+    StepControl,
+    kind_of_step,
+    limited_by_loaded_contacts,
+    limited_by_taut_ties,
+    next_length,
+    short_step,
+)
+from mjrock.engine.sticking import Joints, StepMotion, deepest_point, presses_unloaded, rolling_distance
 from mjrock.engine.touches import Openings
 from mjrock.geometry.frames import frames_of
 from mjrock.geometry.kinematics import gap, gaps, meeting
@@ -46,7 +53,7 @@ def test_the_limits_of_a_wall(scene, wall, contacts):
     np.testing.assert_allclose(control.ringing, [[0] * 4, [METHOD.ringing_borne] * 2 + [METHOD.ringing_open] * 2])
     np.testing.assert_allclose(control.beta, [[1 / 12] * 4, (1 + control.ringing[1] ** 2) / 4])
     for share, kind in ((0.99, 0), (1.01, 1)):
-        assert resolves(control, share * METHOD.smooth / scene.highest_frequency) == kind
+        assert kind_of_step(control, share * METHOD.smooth / scene.highest_frequency) == kind
 
 
 def test_a_record_and_a_dashpot_shorten_the_steps(wall, contacts):
@@ -74,13 +81,13 @@ def test_a_step_is_judged_by_the_change_of_acceleration(scene):
     """Halved above what is tolerated, doubled after two steps in a row below a quarter of it."""
     control = StepControl.from_scene(scene, course(scene), 1e-3)
     tolerated, h = (METHOD.change * 1e-3) ** 2, math.sqrt(control.short * control.longest)
-    assert judged(control, h, 1.01 * tolerated, 1) == (0.5 * h, 0)
-    assert judged(control, h, 0.99 * tolerated, 1) == (h, 0)
-    assert judged(control, h, 1.01 * tolerated / 16, 1) == (h, 0)
-    assert judged(control, h, 0.99 * tolerated / 16, 0) == (h, 1)
-    assert judged(control, h, 0.99 * tolerated / 16, 1) == (2 * h, 0)
-    assert judged(control, 1.5 * control.short, 2 * tolerated, 0) == (control.short, 0)
-    assert judged(control, 0.7 * control.longest, 0.0, 1) == (control.longest, 0)
+    assert next_length(control, h, 1.01 * tolerated, 1) == (0.5 * h, 0)
+    assert next_length(control, h, 0.99 * tolerated, 1) == (h, 0)
+    assert next_length(control, h, 1.01 * tolerated / 16, 1) == (h, 0)
+    assert next_length(control, h, 0.99 * tolerated / 16, 0) == (h, 1)
+    assert next_length(control, h, 0.99 * tolerated / 16, 1) == (2 * h, 0)
+    assert next_length(control, 1.5 * control.short, 2 * tolerated, 0) == (control.short, 0)
+    assert next_length(control, 0.7 * control.longest, 0.0, 1) == (control.longest, 0)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -93,10 +100,10 @@ def test_a_loaded_point_stays_loaded(scene, sign):
     for point, share, counts in ((0, 1.0, True), (1, just, True), (1, hardly, False), (3, 1, False)):
         moving = openings(4, {point: (-share * pressed, 0.0, 7.0, sign * curve)})
         expected = math.sqrt(share) * longest if counts else 1.0
-        assert while_loaded(control, points, moving, 1.0) == pytest.approx(expected)
+        assert limited_by_loaded_contacts(control, points, moving, 1.0) == pytest.approx(expected)
     moving = openings(4, {0: (-pressed, 0.0, 0.0, sign * curve), 3: (-pressed, 0.0, 7.0, sign * curve)})
-    assert while_loaded(control, points, moving, 0.99 * longest) == 0.99 * longest
-    assert while_loaded(control._replace(short=2 * longest), points, moving, 1.0) == 2 * longest
+    assert limited_by_loaded_contacts(control, points, moving, 0.99 * longest) == 0.99 * longest
+    assert limited_by_loaded_contacts(control._replace(short=2 * longest), points, moving, 1.0) == 2 * longest
 
 
 def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
@@ -105,16 +112,16 @@ def test_a_tie_that_can_yield_is_met_at_its_greatest_length():
     ties = scene.ties._replace(k=np.ones(1), stretch=np.ones(1), reach=np.ones(1))
     longer = openings(5, {4: (-0.01, -0.3, 20.0, 10.0)})
     control = StepControl.from_scene(scene, course(scene), 1e-3)._replace(short=1e-4, taut=1.0)
-    assert while_taut(control, ties, longer, 0.02) == pytest.approx(0.01)
-    assert while_taut(control._replace(short=0.015), ties, longer, 0.02) == 0.015
-    assert while_taut(control, ties, longer, 0.009) == 0.009
+    assert limited_by_taut_ties(control, ties, longer, 0.02) == pytest.approx(0.01)
+    assert limited_by_taut_ties(control._replace(short=0.015), ties, longer, 0.02) == 0.015
+    assert limited_by_taut_ties(control, ties, longer, 0.009) == 0.009
     for other in ((0.01, -0.3, 20.0, 10.0), (-0.01, 0.3, 20.0, 10.0)):  # slack, and shortening
-        assert while_taut(control, ties, openings(5, {4: other}), 0.02) == 0.02
+        assert limited_by_taut_ties(control, ties, openings(5, {4: other}), 0.02) == 0.02
     elastic = ties._replace(stretch=np.array([math.inf]))
-    assert while_taut(control, elastic, longer, 0.02) == 0.02
-    assert while_taut(control._replace(taut=0.004), elastic, longer, 0.02) == 0.004
+    assert limited_by_taut_ties(control, elastic, longer, 0.02) == 0.02
+    assert limited_by_taut_ties(control._replace(taut=0.004), elastic, longer, 0.02) == 0.004
     slack = openings(5, {4: (0.01, -0.3, 20.0, 10.0)})
-    assert while_taut(control._replace(taut=0.004), elastic, slack, 0.02) == 0.02
+    assert limited_by_taut_ties(control._replace(taut=0.004), elastic, slack, 0.02) == 0.02
 
 
 def test_steps_on_a_taut_tie(wall, contacts):
@@ -162,7 +169,7 @@ def test_which_body_presses_what_bears_nothing_at_rest():
         ((0, 0, 0, -0.002), (True, True)),
     ):
         pose = scene.at_rest.ravel() + np.array([moved[0], moved[1], 0, moved[2], moved[3], 0])
-        found = tuple(presses(points_of(scene), body, frames_of(pose)) for body in (0, 1))
+        found = tuple(presses_unloaded(points_of(scene), body, frames_of(pose)) for body in (0, 1))
         assert found == pressing
 
 
@@ -189,8 +196,8 @@ def test_the_deepest_point_of_a_joint():
         for joint, of in ((0, (0, 1)), (1, (2, 3))):
             best = max(of, key=lambda i: depths[i])
             expected = best if depths[best] > 0 else -1
-            assert deepest(scene.places, joints, joint, frame) == expected
-        assert deepest(scene.places, joints, 0, frame) == found[0]
+            assert deepest_point(scene.places, joints, joint, frame) == expected
+        assert deepest_point(scene.places, joints, 0, frame) == found[0]
 
 
 @pytest.mark.parametrize("i", [1, 3])
@@ -205,8 +212,10 @@ def test_an_edge_rolls_about_the_place_of_friction(i):
     depth = [-gap(scene.places, i, frames_of(q), q, q).value for q in (pose, later)]
     relative = turn if i == 1 else -2 * turn
     meets = meeting(scene.places, i, frames_of(later))
-    step = StepPoses(pose, frames_of(pose), later, frames_of(later))
-    assert rolled(scene.places, i, meets, tangent(meets.normal), step) == pytest.approx(
+    step = StepMotion(
+        Step(1e-3, np.zeros(0), np.zeros(0)), 1.0, 0 * pose, 0 * pose, pose, later, frames_of(pose), frames_of(later)
+    )
+    assert rolling_distance(scene.places, i, meets, tangent(meets.normal), step) == pytest.approx(
         -relative * 0.5 * np.mean(depth), rel=1e-12
     )
 

@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 from space_scenes import box, course, fitted, fixed
 
 import mjrock as mr
-from mjrock.engine.sticking import Joints, StepPoses, deepest, rolled, tangents_at
+from mjrock.engine.rows import Step
+from mjrock.engine.sticking import Joints, StepMotion, deepest_point, rolling_distance, tangents_at
 from mjrock.geometry.frames import SPACE, frames_of
 from mjrock.geometry.kinematics import depth, meeting
 from mjrock.geometry.poses import moved
@@ -93,7 +94,8 @@ def test_a_point_rolls_as_its_body_turns_over_its_face():
     motion = np.zeros(12)
     motion[3:6], motion[9:12] = turns
     pose = moved(start, motion, SPACE)
-    step = StepPoses(start, frames_of(start, SPACE), pose, frames_of(pose, SPACE))
+    frames = frames_of(start, SPACE), frames_of(pose, SPACE)
+    step = StepMotion(Step(1e-3, np.zeros(0), np.zeros(0)), 1.0, motion, motion, start, pose, *frames)
     for i in (int(np.flatnonzero(scene.contacts.body == body)[0]) for body in (0, 1)):
         meets = meeting(scene.places, i, step.frames)
         pressed = 0.5 * (depth(scene.places, i, step.from_frames) + depth(scene.places, i, step.frames))
@@ -101,7 +103,7 @@ def test_a_point_rolls_as_its_body_turns_over_its_face():
         expected = -0.5 * pressed * np.cross(relative, meets.normal)
         ways = tangents_at(scene.places, i, step.frames)
         np.testing.assert_allclose([*ways, meets.normal] @ np.transpose([*ways, meets.normal]), np.eye(3), atol=1e-14)
-        found = [rolled(scene.places, i, meets, way, step) for way in ways]
+        found = [rolling_distance(scene.places, i, meets, way, step) for way in ways]
         np.testing.assert_allclose(found, np.array(ways) @ expected, rtol=1e-6)
         assert pressed > 1e-3
 
@@ -116,4 +118,4 @@ def test_of_two_ends_of_an_edge_it_is_the_one_that_stuck():
         pose = np.array([0.0, 0.0, -4e-3, *np.roll(turn.as_quat(), 1)])
         for stuck, point in enumerate(expected, start=2):
             joints.stuck[0] = stuck
-            assert deepest(scene.places, joints, 0, frames_of(pose, SPACE)) == point
+            assert deepest_point(scene.places, joints, 0, frames_of(pose, SPACE)) == point

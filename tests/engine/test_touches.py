@@ -14,7 +14,7 @@ from mjrock.engine.sliding import Sliding
 from mjrock.engine.step_control import StepControl, short_step
 from mjrock.engine.stepping import fitted_steps
 from mjrock.engine.sticking import Joints
-from mjrock.engine.touches import Openings, Touches, hardest, predict
+from mjrock.engine.touches import Openings, Touches, hardest_touch, predict_touches
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
 from mjrock.problem.wall.effect import LinkLaw
@@ -107,18 +107,18 @@ def test_when_a_gap_closes(curve):
         openings, touches = Openings.with_room(2), Touches(np.ones(2), *np.zeros((3, 2)))
         for i, opening in enumerate([(1.0, -0.3, 0.0, 0.0), (g, g1, *parts)]):
             openings.value[i], openings.rate[i], openings.linear[i], openings.swept[i] = opening
-        assert predict(touches, openings, 1.01 * t, 1.0, 0.0) == pytest.approx(t)
+        assert predict_touches(touches, openings, 1.01 * t, 1.0, 0.0) == pytest.approx(t)
         assert (touches.time[1], touches.speed[1]) == pytest.approx((t, -(g1 + curve * t)))
         assert touches.time[0] == np.inf
-        assert predict(touches, openings, 0.99 * t, 1.0, 0.0) == np.inf
+        assert predict_touches(touches, openings, 0.99 * t, 1.0, 0.0) == np.inf
         openings.value[1] = -1e-9  # it is closed already
-        assert predict(touches, openings, 1.0, 1.0, 0.0) == np.inf
+        assert predict_touches(touches, openings, 1.0, 1.0, 0.0) == np.inf
 
 
 def test_the_hardest_of_the_touches_in_a_short_window_is_met():
     times, speeds = np.array([0.3, 0.2, 0.25, 0.31, np.inf]), np.array([0.1, 0.5, 0.9, 2.0, 9.0])
     touches = Touches(*np.zeros((2, 5)), times, speeds)
-    assert [hardest(touches, latest) for latest in (0.2, 0.24, 0.3, 0.31)] == [0.2, 0.2, 0.25, 0.31]
+    assert [hardest_touch(touches, latest) for latest in (0.2, 0.24, 0.3, 0.31)] == [0.2, 0.2, 0.25, 0.31]
 
 
 def test_a_tie_that_has_yielded_is_met_where_it_now_goes_taut():

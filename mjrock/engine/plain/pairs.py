@@ -13,7 +13,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from ...contacts.solref import body_weight, pair_values, row
+from ...contacts.solref import RowStep, body_weight, pair_values, row
 from ...method import METHOD
 from ...problem.masonry.laws.dry import PairProperties
 from ...problem.wall.rest_geometry import in_space
@@ -22,8 +22,6 @@ from ...scene.parts import GROUND
 from ...scene.scene import Scene
 from .pieces import Piece
 
-NEWMARK = 0.25
-"""Newmark's beta of the contacts: average acceleration, which is stable at every step [-]."""
 FRICTION_MASSES = 100.0
 """Inertia of a friction row of several bodies in masses of the body that it holds [-]. Under an acceleration a along
 its face a contact that sticks creeps at a h / FRICTION_MASSES. With ten times as much a step of thirty blocks takes 1.7
@@ -87,9 +85,9 @@ class Pairs:
         """What MuJoCo needs for the pairs at a step [s], see `mjrock.engine.rows`."""
         count = len(self.k)
         solref, impedance, inertia = np.zeros((count, 2)), np.zeros(count), np.zeros(count)
+        step = RowStep(timestep, overdamped=METHOD.borne)
         for i in range(count):
-            given = self.k[i], self.c[i], timestep, self.weight[i], NEWMARK, 0.0, METHOD.borne
-            dashpot, inertia[i] = row(*given)
+            dashpot, inertia[i] = row(self.k[i], self.c[i], self.weight[i], step)
             *solref[i], impedance[i] = pair_values(self.k[i], dashpot, inertia[i], self.weight[i])
         grips = self.friction > 0
         held = self.friction_inertia / self.weight[grips]
