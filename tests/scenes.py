@@ -24,7 +24,7 @@ def changed(scene, **parts):
 def fixed_steps(scene, course, timestep):
     """The fixed steps of a scene."""
     with engine_of(scene) as engine:
-        engine.follow(timestep, pair_rows(scene, timestep, 0.25))
+        engine.set_step(timestep, pair_rows(scene, timestep, 0.25))
         engine.release(course)
         return stepping.fixed_steps(engine, scene, course, 0.25)
 

@@ -51,7 +51,7 @@ def course(scene, duration, *, pose=None, velocity=None, **motions):
 def fixed(scene, what, timestep, *, beta=0.25, coulomb=False):
     """Steps of one length."""
     with engine_of(scene) as engine:
-        engine.follow(timestep, pair_rows(scene, timestep, beta))
+        engine.set_step(timestep, pair_rows(scene, timestep, beta))
         engine.release(what)
         return stepping.fixed_steps(engine, scene, what, beta, coulomb=coulomb)
 

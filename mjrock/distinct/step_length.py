@@ -32,7 +32,7 @@ import numpy as np
 
 from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
-from ..result.motion import intervals
+from ..result.motion import intervals, whole_steps
 from ..scene.time_step import EXPLICIT_STEP, STEP_TAKEN, warn_if_tiny
 from .stable_step import longest_step, rates_of_links, stiffest_lines
 from .system import System
@@ -234,9 +234,9 @@ class TimeGrid(NamedTuple):
             last = count * parts * every
             return cls(duration / last, every, parts, last, duration)
         length.require_stable(timestep)
-        steps, last = max(1, round(output_step / timestep)), max(1, round(duration / timestep))
+        steps, last = whole_steps(output_step, timestep), max(1, round(duration / timestep))
         every = steps // min(steps, intervals(steps * timestep, length.spacing))
-        return cls(timestep, every, round(steps / every), last, last * timestep)
+        return cls(timestep, every, steps // every, last, last * timestep)
 
     @property
     def check(self) -> int:

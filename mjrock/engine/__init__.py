@@ -1,4 +1,4 @@
-"""The contact law in MuJoCo. This package knows no restitution but that of the law itself."""
+"""Models of MuJoCo on compliant contacts, their steps, and the responses that are read from them."""
 
 import mujoco
 

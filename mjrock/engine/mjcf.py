@@ -106,8 +106,8 @@ def scene_mjcf(scene: Scene, timestep: float, newmark_beta: float = 0.25, keyfra
         *(f"  {site}" for site in sites(scene, GROUND, scene.radius)),
         "</worldbody>",
         *section("contact", _pairs(scene, fixed.rows)),
-        *section("tendon", linked(scene)),
-        *section("actuator", forced(scene)),
+        *section("tendon", link_elements(scene)),
+        *section("actuator", force_elements(scene)),
         *section("custom", _records(scene, newmark_beta)),
         *section("keyframe", iter(["  " + tag("key", name="release", **keyframe.values)])),
     ]
@@ -184,7 +184,7 @@ def pair_rows(scene: Scene, timestep: float, newmark_beta: float = 0.25, method:
     return FixedRows(rows, set_rows(points, step, rows), scene.links.law["c"])
 
 
-def linked(scene: Scene) -> Iterator[str]:
+def link_elements(scene: Scene) -> Iterator[str]:
     """The links: tendons with a spring that is slack up to a length and yields at a force, and with a dashpot."""
     links, lengths = scene.links, dict(zip(scene.links.sprung.names, scene.ties.reach.tolist(), strict=True))
     for i, name in enumerate(links.names):
@@ -198,7 +198,7 @@ def linked(scene: Scene) -> Iterator[str]:
         yield "  " + tag("spatial", ends, name=name, **attributes)
 
 
-def forced(scene: Scene) -> Iterator[str]:
+def force_elements(scene: Scene) -> Iterator[str]:
     """The constant forces: actuators that need no control."""
     for name, force in zip(scene.forces.names, scene.forces.force, strict=True):
         yield "  " + tag(

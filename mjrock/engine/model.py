@@ -22,22 +22,22 @@ from .mjcf import FixedRows, Keyframe, pair_rows, scene_mjcf
 from .record import Record
 
 CHUNK = 1_000
-"""Steps between two looks at a run from Python: progress, warnings of the engine, an interruption by the user."""
-EVERYWHERE = 1e6
-"""Distance within which every contact is closed [m]."""
-KEPT = 16
-"""Scenes whose compiled models are kept for the next run."""
+"""Steps after which a loop returns to Python, for progress, warnings of the engine and interruptions by the user."""
+MARGIN_OF_ALL = 1e6
+"""Margin with which every contact is closed [m]."""
+SCENES_KEPT, ENGINES_KEPT = 16, 4
+"""Scenes whose compiled models are kept for further runs, and most models of one scene."""
 TEXT_STEP = 1e-3
 """Step of the text that is compiled [s]."""
 
 
-def _noted(text: str) -> None:
+def _log(text: str) -> None:
     """Log a warning of MuJoCo, which would otherwise write MUJOCO_LOG.TXT into the current folder."""
     logging.getLogger("mujoco").warning(text)
 
 
 if mujoco.get_mju_user_warning() is None:
-    mujoco.set_mju_user_warning(_noted)
+    mujoco.set_mju_user_warning(_log)
 
 
 class SimulationError(RuntimeError):
@@ -84,31 +84,31 @@ class Engine:
             Record.with_room(CHUNK, (model.nq, model.nv), model.npair, len(scene.links.damped.names)),
         )
 
-    def follow(self, timestep: float, fixed: FixedRows) -> None:
-        """Set the step and the rows of all contacts."""
+    def set_step(self, timestep: float, fixed: FixedRows) -> None:
+        """Set the step [s], the rows of all contacts and the dashpots of links."""
         self.model.opt.timestep, self.model.opt.impratio = timestep, fixed.impratio
-        for values, wanted in zip(self.memory.rows, fixed.rows, strict=True):
-            values[:] = wanted
+        for values, new in zip(self.memory.rows, fixed.rows, strict=True):
+            values[:] = new
         self.model.tendon_damping[:] = fixed.damping
 
     def place(self, course: Course) -> None:
-        """Set pose and velocity of the start, see `placed`."""
-        placed(self.model, self.data, course.pose.ravel(), course.velocity.ravel())
+        """Set pose and velocity of the start, see `set_state`."""
+        set_state(self.model, self.data, course.pose.ravel(), course.velocity.ravel())
 
     @property
     def closed(self) -> Flags:
-        """Which contacts the engine sees closed at its last look, shape (m,). Gaps may be zero to rounding."""
+        """Which contacts the engine found closed last, shape (m,). Gaps may be zero to rounding."""
         pairs = np.sort(np.column_stack([self.model.pair_geom1, self.model.pair_geom2]), axis=1)
         met = np.sort(self.data.contact.geom, axis=1)
         closed: Flags = (pairs[:, None] == met[None]).all(axis=2).any(axis=1)
         return closed
 
     def release(self, course: Course) -> None:
-        """Set pose and velocity of the start, the velocity half a step back, see `released`."""
-        released(self.model, self.data, course.pose.ravel(), course.velocity.ravel())
+        """Set pose and velocity of the start, the velocity half a step back, see `set_release`."""
+        set_release(self.model, self.data, course.pose.ravel(), course.velocity.ravel())
 
 
-def placed(model: mujoco.MjModel, data: mujoco.MjData, pose: Array, velocity: Array) -> None:
+def set_state(model: mujoco.MjModel, data: mujoco.MjData, pose: Array, velocity: Array) -> None:
     """Set qpos and qvel of a start.
 
     Ties that the pose stretches too far have yielded: MuJoCo lets a tie yield at the end of a step, and the first step
@@ -128,34 +128,36 @@ def placed(model: mujoco.MjModel, data: mujoco.MjData, pose: Array, velocity: Ar
     mujoco.mj_forward(model, data)  # an error of the engine is one of Python here, and the end in a compiled loop
 
 
-def released(model: mujoco.MjModel, data: mujoco.MjData, pose: Array, velocity: Array) -> None:
+def set_release(model: mujoco.MjModel, data: mujoco.MjData, pose: Array, velocity: Array) -> None:
     """Set qpos and qvel of a start, the velocity half a step back, where the leapfrog keeps it.
 
     Before the release the ground is quiet. Contacts that slide have their rows.
     """
-    placed(model, data, pose, velocity)
+    set_state(model, data, pose, velocity)
     for _ in range(10):  # the dashpots act on the velocity that is being set: a contraction, exact to rounding
         mujoco.mj_forward(model, data)
         data.qvel[:] = velocity - 0.5 * model.opt.timestep * data.qacc
 
 
-def require_well(data: mujoco.MjData, t: float) -> None:
-    """Raise a StepError if the engine has warned or the state is not finite, at a time [s]."""
+def require_finite(data: mujoco.MjData, t: float) -> None:
+    """Raise a StepError with the time [s] if the engine has warned, or the state is not finite."""
     warned = [mujoco.mjtWarning(i).name for i in np.flatnonzero(data.warning.number)]
     if warned or not (np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()):
         raise StepError(f"MuJoCo warned ({', '.join(warned)})" if warned else "the state is not finite", t)
 
 
 def require_room(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Make sure that the memory of the engine holds all contacts at once: in a compiled loop it would end the process.
+    """Make sure that the memory of the engine holds all contacts at once: in a compiled loop an overflow would end the
+    process.
 
-    One look with a margin within which every pair of geoms is in contact, through the bindings, which raise an error.
+    The contacts are found once with a margin with which every pair of geoms is in contact, through the bindings, which
+    raise an error.
 
     Raises:
         SimulationError: if it does not.
     """
     margin, iterations = model.pair_margin.copy(), model.opt.iterations
-    model.pair_margin[:], model.opt.iterations = EVERYWHERE, 1
+    model.pair_margin[:], model.opt.iterations = MARGIN_OF_ALL, 1
     try:
         mujoco.mj_forward(model, data)
         full = data.ncon < model.npair or data.warning.number.any()
@@ -184,17 +186,17 @@ def engine_of(scene: Scene) -> Iterator[Engine]:
         engine = _idle[scene.key].pop()
     except (KeyError, IndexError):
         engine = Engine.compile(scene)
-    engine.follow(TEXT_STEP, pair_rows(scene, TEXT_STEP))
+    engine.set_step(TEXT_STEP, pair_rows(scene, TEXT_STEP))
     yield engine
-    _idle.setdefault(scene.key, deque(maxlen=4)).append(engine)  # one whose run has failed is not kept
-    while len(_idle) > KEPT:
+    _idle.setdefault(scene.key, deque(maxlen=ENGINES_KEPT)).append(engine)  # one whose run has failed is not kept
+    while len(_idle) > SCENES_KEPT:
         _idle.popitem(last=False)
 
 
 def released_mjcf(scene: Scene, course: Course, timestep: float, newmark_beta: float = 0.25) -> str:
     """The text of a scene whose keyframe has the velocity half a step before the release, as the engine finds it."""
     with engine_of(scene) as engine:
-        engine.follow(timestep, pair_rows(scene, timestep, newmark_beta))
+        engine.set_step(timestep, pair_rows(scene, timestep, newmark_beta))
         engine.release(course)
         keyframe = Keyframe(course.pose, engine.data.qvel.reshape(len(scene.bodies.names), -1), engine.data.plastic)
         return scene_mjcf(scene, timestep, newmark_beta, keyframe)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from ..method import Method
 from ..quantities import Within, keep, keep_declared, require_flag, require_kind, require_sample_count, require_size
-from ..result.motion import OutputStep, required_spacing
+from ..result.motion import OutputStep, required_spacing, whole_steps
 from ..scene.time_step import MUJOCO_STEP, required_timestep
 
 FixedStep = Annotated[float | None, MUJOCO_STEP]
@@ -18,7 +18,7 @@ NewmarkBeta = Annotated[float, Within(0, 10)]
 """Newmark's beta of the contact rows."""
 
 SPACING = 1e-3
-"""Distance of samples between fitted steps, where no spacing is given [s]."""
+"""Distance of samples by default, but for fixed steps, which are all samples [s]."""
 
 
 @dataclass(frozen=True)
@@ -71,14 +71,14 @@ class Options:
         return (self.output_step or SPACING) if self.timestep is None else None
 
     @property
-    def apart(self) -> float:
-        """Distance of samples [s]."""
-        return self.spacing or (self.timestep or SPACING) * self.stride
+    def samples(self) -> float:
+        """How many samples the response has, about."""
+        return self.duration / (self.spacing or (self.timestep or SPACING) * self.stride)
 
     @property
     def stride(self) -> int:
-        """Every how many steps there is a sample at a fixed step."""
-        return max(1, round(self.output_step / self.timestep)) if self.output_step and self.timestep else 1
+        """How many fixed steps there are from one sample to the next."""
+        return whole_steps(self.output_step, self.timestep) if self.output_step and self.timestep else 1
 
     @property
     def remedy(self) -> str:

@@ -1,4 +1,4 @@
-"""Steps of the engine: what a run of MuJoCo leaves behind, or what broke it down."""
+"""Steps of the engine: their record, their windows, and samples between them."""
 
 from __future__ import annotations
 
@@ -39,16 +39,14 @@ class Record(NamedTuple):
     @classmethod
     def with_room(cls, steps: int, coordinates: tuple[int, int], contacts: int, dampers: int = 0) -> Record:
         """Room for a number of steps of bodies with given numbers of coordinates and velocities."""
-        t, h = np.empty((2, steps))
-        before, after = np.empty((2, steps, coordinates[1]))
         return cls(
-            t,
-            h,
-            np.empty((steps, coordinates[0])),
-            before,
-            after,
-            np.empty((steps, contacts)),
-            np.empty((steps, dampers)),
+            t=np.empty(steps),
+            h=np.empty(steps),
+            pose=np.empty((steps, coordinates[0])),
+            before=np.empty((steps, coordinates[1])),
+            after=np.empty((steps, coordinates[1])),
+            friction=np.empty((steps, contacts)),
+            damping=np.empty((steps, dampers)),
         )
 
     def first(self, n: int) -> Record:
@@ -79,7 +77,7 @@ class StepKinds(NamedTuple):
 
 @dataclass(frozen=True)
 class Steps:
-    """What the engine did.
+    """The steps of a run, and how they were made.
 
     Args:
         record: the steps.
@@ -116,8 +114,8 @@ class Steps:
         velocity: Array = 0.5 * (self.record.before + self.record.after)
         return velocity
 
-    def sampled(self, duration: float, spacing: float | None, stride: int) -> tuple[Array, Array, Array, End]:
-        """Samples: times [s], poses (n, bodies, nq), velocities (n, bodies, nv), and the end.
+    def sampled(self, duration: float, spacing: float | None, stride: int) -> Samples:
+        """Samples of the steps, and their end.
 
         Args:
             duration: up to when samples that are interpolated reach [s].
@@ -135,7 +133,7 @@ class Steps:
             pose, velocity = from_rates(*interpolated(self.t, pose, rates, t), self.freedom)
             last = pose[-1], velocity[-1]
         end = End(last[0].reshape(-1, nq), last[1].reshape(-1, nv))
-        return t, pose.reshape(len(t), -1, nq), velocity.reshape(len(t), -1, nv), end
+        return Samples(t, pose.reshape(len(t), -1, nq), velocity.reshape(len(t), -1, nv), end)
 
     @cached_property
     def windows(self) -> Windows:
@@ -150,6 +148,15 @@ class Steps:
         late = np.diff(square)[:, None] * ((after - before) / self.h[:, None])[:-1] / 8
         behind = np.concatenate([np.zeros_like(before[:1]), np.cumsum(late, axis=0)])
         return Windows(t, width, pose, moved(pose, -behind, freedom), velocity, mean)
+
+
+class Samples(NamedTuple):
+    """Samples of a run: times [s], poses (n, bodies, nq) and velocities (n, bodies, nv), and its end."""
+
+    t: Array
+    pose: Array
+    velocity: Array
+    end: End
 
 
 class Windows(NamedTuple):

@@ -21,14 +21,15 @@ from ..scene.time_step import sound_timestep
 from .energy_work import ground_work, ledger
 from .forces import kept_forces
 from .model import SimulationError
+from .options import Options
 from .record import Steps
 
 MARKS = 1000
-"""Times in a run of masonry between which no energy may appear."""
-SLIDING = 4.0
+"""Most times in a run of masonry between which no energy may appear."""
+SLIDING_STABLE = 4.0
 """omega h up to which a fixed step follows masonry that slides, omega the highest contact frequency [-]."""
 Settings = dict[str, float | None]
-"""What a run was made with, and what its steps took, for the `stats` of its response."""
+"""Settings of a run and times that its steps took, for the `stats` of its response."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +60,7 @@ class EngineRun:
     gain: StepError | None
 
     @classmethod
-    def judged(cls, problem: Problem, scene: Scene, course: Course, steps: Steps) -> EngineRun:
+    def checked(cls, problem: Problem, scene: Scene, course: Course, steps: Steps) -> EngineRun:
         """The run of these steps.
 
         Raises:
@@ -73,22 +74,31 @@ class EngineRun:
         reading = problem.read(scene, steps.t, motion, released=course.released)
         marks, count = marks_of(reading, steps), reading.count
         work = ground_work(scene, course, steps)
-        drawn = not problem.case.settled  # its springs hold nothing at the start
-        elastic = float(stored[:count, 2].max()) if drawn else float(scene.rest_energies[2])
-        given = max(float(energy[0]), 0.0) + float(np.abs(work[:count]).sum()) + elastic
-        scale = max(given, float(stored[:count, 0].max()))  # what falls below its rest has more
+        unloaded = not problem.case.settled  # its springs have no energy at the start
+        elastic = float(stored[:count, 2].max()) if unloaded else float(scene.rest_energies[2])
+        put_in = max(float(energy[0]), 0.0) + float(np.abs(work[:count]).sum()) + elastic
+        scale = max(put_in, float(stored[:count, 0].max()))  # what falls below its rest has more
         require_no_gain(steps.windows.t[marks], balance(scene, steps, work, marks), scale)
         gain = None
         if reading.joints is not None:
             gain = gain_of_falling(scene, steps, work, count, scale + float(stored[:, 0].max()))
-        return cls(problem, scene, course, steps, energy, dissipated, broken, reading, scale, gain)
+        return cls(
+            problem=problem,
+            scene=scene,
+            course=course,
+            steps=steps,
+            energy=energy,
+            dissipated=dissipated,
+            broken=broken,
+            reading=reading,
+            scale=scale,
+            gain=gain,
+        )
 
-    def response(
-        self, spacing: float | None, stride: int, want_ledger: bool, want_forces: bool, settings: Settings
-    ) -> Response:
-        """What was found: samples `spacing` apart, or every `stride`-th step where that is None."""
+    def response(self, options: Options, settings: Settings) -> Response:
+        """The response of the run, with the samples, ledger and forces that the options ask for."""
         scene, course, steps, reading = self.scene, self.course, self.steps, self.reading
-        t, pose, velocity, end = steps.sampled(course.duration, spacing, stride)
+        t, pose, velocity, end = steps.sampled(course.duration, options.spacing, options.stride)
         plastic = self.plastic()
         return Response(
             case=self.problem.case,
@@ -100,26 +110,26 @@ class EngineRun:
             rocking=reading.rocking,
             joints=reading.joints,
             plastic=plastic,
-            ledger=ledger(scene, course, steps).at(t) if want_ledger else None,
+            ledger=ledger(scene, course, steps).at(t) if options.ledger else None,
             stats=self.stats() | reading.stats | settings,
             end=end,
-            kept_forces=kept_forces(self.problem.case, scene, steps, t, plastic) if want_forces else None,
+            kept_forces=kept_forces(self.problem.case, scene, steps, t, plastic) if options.forces else None,
         )
 
     def plastic(self) -> dict[str, Plastic]:
-        """What each tie has yielded when the duration is over."""
+        """How far each tie has yielded, and whether it has broken, when the duration is over."""
         steps, links, duration = self.steps, self.scene.links.sprung, self.course.duration
         energy = np.array([np.interp(duration, steps.t, dissipated) for dissipated in self.dissipated.T])
         when = np.append(steps.windows.t, np.inf)[np.minimum(self.broken, len(steps.t))]
         when[when > duration] = np.inf
-        gone = np.isfinite(when)
+        broke = np.isfinite(when)
         strength = links.law["strength"]
-        energy[gone] = (strength * links.law["ultimate"])[gone]
-        lost = np.where(gone, 0.5 * strength**2 / links.law["k"], 0.0)
+        energy[broke] = (strength * links.law["ultimate"])[broke]
+        lost = np.where(broke, 0.5 * strength**2 / links.law["k"], 0.0)
         return plastic_of(self.scene, energy / strength, energy, when, lost)
 
     def stats(self) -> Settings:
-        """What a run took, for the `stats` of its response."""
+        """Numbers of the steps and the contacts, for the `stats` of a response."""
         scene, steps, contacts = self.scene, self.steps, self.scene.contacts
         stats: Settings = {
             "steps": len(steps.t),
@@ -143,8 +153,8 @@ def marks_of(reading: Reading, steps: Steps) -> Integers:
     last, times = reading.count - 1, reading.peak_times
     if times is None:
         return np.linspace(0, last, min(reading.count, MARKS)).astype(int)
-    met = np.searchsorted(steps.windows.t, times[times <= steps.t[last]])
-    return np.unique(np.concatenate([[0], np.minimum(met, last), [last]]))
+    peaks = np.searchsorted(steps.windows.t, times[times <= steps.t[last]])
+    return np.unique(np.concatenate([[0], np.minimum(peaks, last), [last]]))
 
 
 def gain_of_falling(scene: Scene, steps: Steps, work: Array, count: int, scale: float) -> StepError | None:
@@ -165,10 +175,10 @@ def gain_of_falling(scene: Scene, steps: Steps, work: Array, count: int, scale: 
 
 
 def balance(scene: Scene, steps: Steps, work: Array, marks: Integers) -> Array:
-    """Energy that is there and was taken less what the ground has put in, at the start of some windows [J].
+    """Energy that is there and was taken less the work of the ground, at the start of some windows [J], shape (marks,).
 
-    In a window energy and work belong to the same time. Neighbouring ones decide nothing: a touch inside a step
-    misplaces energy while the contact lasts. What matters is whether an impact as a whole has lost or gained.
+    In a window energy and work belong to the same time. Neighbouring windows are not compared, since a touch inside a
+    step misplaces energy while the contact lasts. What counts is whether an impact as a whole has lost or gained.
 
     Args:
         scene, steps: the run.
@@ -180,11 +190,11 @@ def balance(scene: Scene, steps: Steps, work: Array, marks: Integers) -> Array:
     at = np.arange(marks[-1] + 1) if yields else marks
     broken = (breaks(scene.ties, steps.pose),) if yields else ()
     stored, dissipated = scene.accounts(windows.pose[at], windows.velocity[at], *broken)
-    own = stored.sum(axis=1) + dissipated.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
-    return np.asarray(own[marks] if yields else own)
+    balance_at = stored.sum(axis=1) + dissipated.sum(axis=1) - np.append(0.0, np.cumsum(work))[at]
+    return np.asarray(balance_at[marks] if yields else balance_at)
 
 
-def explained(error: StepError, scene: Scene, h: float, accuracy: float | None) -> SimulationError:
+def simulation_error(error: StepError, scene: Scene, h: float, accuracy: float | None) -> SimulationError:
     """The error for the user: what happened and what to change."""
     sound = sound_timestep(scene.highest_frequency)
     if accuracy is not None:
@@ -193,9 +203,9 @@ def explained(error: StepError, scene: Scene, h: float, accuracy: float | None) 
         advice = f"the largest sound step is {sound:.3g} s"
     else:
         advice = "the step is sound: the contacts are too stiff or too little damped for it; halve it"
-    if accuracy is None and scene.limits.damped_joints and h * scene.highest_frequency > SLIDING:
+    if accuracy is None and scene.limits.damped_joints and h * scene.highest_frequency > SLIDING_STABLE:
         advice = (
-            f"joints that slide are unstable at a fixed step beyond {SLIDING / scene.highest_frequency:.3g} s "
-            f"(omega h = {SLIDING:g}, omega the highest frequency of the closed contacts); {advice}"
+            f"joints that slide are unstable at a fixed step beyond {SLIDING_STABLE / scene.highest_frequency:.3g} s "
+            f"(omega h = {SLIDING_STABLE:g}, omega the highest frequency of the closed contacts); {advice}"
         )
     return SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; {advice}")

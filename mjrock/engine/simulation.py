@@ -24,10 +24,10 @@ from .mjcf import pair_rows
 from .model import engine_of
 from .options import Accuracy, FixedStep, NewmarkBeta, Options
 from .plain.run import simulate_plain
-from .run import EngineRun, Settings, explained
+from .run import EngineRun, Settings, simulation_error
 from .run_warnings import (
     interpreted_seconds,
-    require_still,
+    require_for_contact_points,
     warn_if_coarse,
     warn_if_lifted,
     warn_if_sheared,
@@ -42,8 +42,8 @@ ACCURACY, ACCURACY_SHAKEN = 1e-3, 1e-4
 """Accuracy of fitted steps by default [-], the second for a wall on moving ground, whose rocking
 multiplies what an impact errs by (`scripts/measure/records_accuracy.py`)."""
 FINEST_REPEATED, SHARE_REPEATED = 1e-6, 1e-2
-"""Accuracy down to which a run that breaks down is repeated by default [-], and the same as a share of the accuracy
-that a user gave [-]."""
+"""Accuracy down to which a run that breaks down is repeated by default [-], and the share of the accuracy of the user
+down to which it is [-]."""
 
 
 def simulate(
@@ -75,9 +75,9 @@ def simulate(
         coulomb: whether contacts that slide obey Coulomb's law, see `mjrock.engine.sliding`. None means True where
             steps fit the motion, and False at a fixed step, which then is the model text, stepped by MuJoCo.
         output_step: largest spacing of the returned samples [s], 1e-9 to the duration; the last is the end of the run.
-            Fixed steps are thinned to whole steps, None returns them all, with collisions one every 1 ms, and the run
-            ends with the step that is nearest to the duration. Fitted steps are interpolated at even distances, None
-            stands for 1 ms.
+            Fixed steps are thinned to whole steps, so that the spacing may be less, or one step. None returns them all,
+            with collisions one every 1 ms. The run ends with the step that is nearest to the duration. Fitted steps are
+            interpolated at even distances, and None stands for 1 ms.
         ledger: whether to account for every part of the energy, see `mjrock.engine.energy_work`.
         forces: whether to keep `forces` and `reactions` at every sample, see `Forces`. Those of fitted steps are of the
             step in whose window the sample lies.
@@ -109,15 +109,15 @@ def simulate(
         >>> answer.outcome.value
         'at rest'
     """
-    given, watch = locals().copy(), Stopwatch()
+    arguments, watch = locals().copy(), Stopwatch()
     problem = problem_of(case, contacts)
     if require_flag("collisions", collisions):
-        require_left_out(accuracy=accuracy, newmark_beta=newmark_beta, coulomb=coulomb, method=method)
+        refuse_with_collisions(accuracy=accuracy, newmark_beta=newmark_beta, coulomb=coulomb, method=method)
     aim = default_accuracy(case) if accuracy is None else accuracy
     options = Options(case.duration, timestep, aim, newmark_beta, coulomb, output_step, ledger, forces, method)
     finest = FINEST_REPEATED if accuracy is None else SHARE_REPEATED * options.accuracy
     if not collisions:
-        require_still(case)
+        require_for_contact_points(case)
     if contacts is not None and contacts.base.friction is None:
         warn_of_low_stop(case)
     if start is None:
@@ -125,13 +125,13 @@ def simulate(
     if options.timestep is not None:
         require_in_text(case)
     if forces:
-        required_room(case, case.duration / options.apart)
+        required_room(case, options.samples)
     state = None if start is None else required_start(start, case)
-    with first_answer(simulate, **given):
+    with first_answer(simulate, **arguments):
         if collisions:
             response = simulate_plain(problem, options, state)
             response.stats.update(watch.took())
-            return recorded(response, given)
+            return recorded(response, arguments)
         scene = problem.scene(method)
         warn_if_sheared(scene)
         course = problem.course(scene)
@@ -140,12 +140,12 @@ def simulate(
         expect(interpreted_seconds(scene, course.duration, options.timestep))
         if options.timestep is None:
             warn_if_slow(scene)
-            run, settings = fitted(problem, scene, course, options, finest)
+            run, settings = run_fitted_steps(problem, scene, course, options, finest)
         else:
             warn_if_coarse(scene, options.timestep)
             warn_if_tiny(options.timestep, sound_timestep(scene.highest_frequency))
-            run, settings = fixed(problem, scene, course, options, options.timestep)
-        response = run.response(options.spacing, options.stride, options.ledger, options.forces, settings)
+            run, settings = run_fixed_steps(problem, scene, course, options, options.timestep)
+        response = run.response(options, settings)
     if not (options.timestep is None or options.slides):
         warn_if_lifted(scene, run.steps)
     warn_if_slid(run)
@@ -153,14 +153,14 @@ def simulate(
     if response.outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
-    return recorded(response, given)
+    return recorded(response, arguments)
 
 
-def require_left_out(**given: object) -> None:
-    """Raise a ValueError for options of steps that fit the motion, which do not go with collisions."""
-    usual = inspect.signature(simulate).parameters
-    for name, value in given.items():
-        if value != usual[name].default:
+def refuse_with_collisions(**options: object) -> None:
+    """Raise a ValueError for options of `simulate` that do not go with collisions, unless they have their defaults."""
+    parameters = inspect.signature(simulate).parameters
+    for name, value in options.items():
+        if value != parameters[name].default:
             raise ValueError(f"{name} = {value!r} does not go with collisions=True; leave it out")
 
 
@@ -169,10 +169,11 @@ def default_accuracy(case: AnyCase) -> float:
     return ACCURACY_SHAKEN if case.rocks_on_moving_ground else ACCURACY
 
 
-def fitted(
+def run_fitted_steps(
     problem: Problem, scene: Scene, course: Course, options: Options, finest: float
 ) -> tuple[EngineRun, Settings]:
-    """A run with steps that fit the motion, and what it took, repeated with finer steps where it breaks down.
+    """A run with steps that fit the motion, and its settings and times for `stats`. It is repeated with finer steps
+    where it breaks down.
 
     Raises:
         SimulationError: if it breaks down with the finest accuracy too.
@@ -186,16 +187,18 @@ def fitted(
                 watch = Stopwatch()
                 steps = fitted_steps(engine, scene, course, used, coulomb=options.slides, method=method)
             took = watch.stepping()
-            run = EngineRun.judged(problem, scene, course, steps)
+            run = EngineRun.checked(problem, scene, course, steps)
             return run, {"timestep": h, "accuracy": used, "newmark_beta": None, **took}
         except StepError as error:
             if used < 2 * finest:
-                raise explained(error, scene, h, used) from None
+                raise simulation_error(error, scene, h, used) from None
             used /= 10
 
 
-def fixed(problem: Problem, scene: Scene, course: Course, options: Options, h: float) -> tuple[EngineRun, Settings]:
-    """A run at steps of one length h [s], and what it took.
+def run_fixed_steps(
+    problem: Problem, scene: Scene, course: Course, options: Options, h: float
+) -> tuple[EngineRun, Settings]:
+    """A run at steps of one length h [s], and its settings and times for `stats`.
 
     Raises:
         SimulationError: if it breaks down.
@@ -203,12 +206,12 @@ def fixed(problem: Problem, scene: Scene, course: Course, options: Options, h: f
     beta, method = options.newmark_beta, options.method
     try:
         with engine_of(scene) as engine:
-            engine.follow(h, pair_rows(scene, h, beta, method))
+            engine.set_step(h, pair_rows(scene, h, beta, method))
             engine.release(course)
             watch = Stopwatch()
             steps = fixed_steps(engine, scene, course, beta, coulomb=options.slides, method=method)
         took = watch.stepping()
-        run = EngineRun.judged(problem, scene, course, steps)
+        run = EngineRun.checked(problem, scene, course, steps)
     except StepError as error:
-        raise explained(error, scene, h, None) from None
+        raise simulation_error(error, scene, h, None) from None
     return run, {"timestep": h, "accuracy": None, "newmark_beta": beta, **took}

@@ -22,7 +22,7 @@ from ..quantities import Array
 from ..scene.course import Course
 from ..scene.scene import Scene
 from .loop import Progress, StepClock, fitted_loop, fixed_loop, release, settle_ties
-from .model import Engine, require_well
+from .model import Engine, require_finite
 from .record import Record, StepKinds, Steps
 from .setting import Setting
 from .shapes import PLATE
@@ -112,7 +112,7 @@ def _recorded(engine: Engine, duration: float, advance: Callable[[Record], tuple
             n, t, ended = advance(engine.room)
             chunks.append(engine.room.first(n))
             bar.to(t)
-            require_well(engine.data, t)
+            require_finite(engine.data, t)
     return Record.joined(chunks)
 
 

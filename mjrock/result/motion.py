@@ -70,6 +70,11 @@ def intervals(duration: float, spacing: float) -> int:
     return max(1, math.ceil(duration / spacing * (1 - TIME_ROUNDING)))
 
 
+def whole_steps(spacing: float, timestep: float) -> int:
+    """The most steps of one length that take no longer than a spacing, at least one."""
+    return max(1, math.floor(spacing / timestep * (1 + TIME_ROUNDING)))
+
+
 def thinned(count: int, stride: int) -> Integers:
     """Numbers of every `stride`-th of some samples, and of the last, which is the end of a run."""
     return np.unique(np.append(np.arange(0, count, stride), count - 1))

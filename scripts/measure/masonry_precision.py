@@ -137,7 +137,7 @@ def finely(case: mr.MasonryCase, timestep: float) -> Motion:
     setting = Setting.of_run(scene, course)
     peaks, samples = np.zeros(len(scene.bodies.names)), []
     with engine_of(scene) as engine:
-        engine.follow(timestep, pair_rows(scene, timestep, 0.25))
+        engine.set_step(timestep, pair_rows(scene, timestep, 0.25))
         engine.release(course)
         sliding, frames = Sliding.at_start(setting.points, coulomb=False), frames_of(engine.memory.pose)
         while not ended:

@@ -58,6 +58,21 @@ def test_touch_phase_scatter_is_gone(contacts):
     assert scatter["fixed"] > 10 * scatter["fitted"]
 
 
+@pytest.mark.parametrize(("share", "steps"), [(0.3, 1), (1.6, 1), (2.9, 2), (3.0, 3)])
+@pytest.mark.parametrize("solver", ["contact points", "plain model", "explicit steps"])
+def test_samples_of_fixed_steps_are_no_farther_apart_than_requested(contacts, solver, share, steps):
+    """They are as many whole steps apart as fit into the requested spacing."""
+    h = 2e-5
+    options = {"timestep": h, "output_step": share * h}
+    if solver == "explicit steps":
+        stack = mr.Masonry.stack([mr.Block.from_size(1.0, 1.0)], k_n=1e8, friction=0.6, xi=0.05)
+        t = mr.solve_explicit(mr.MasonryCase(stack, 60 * h), **options).t
+    else:
+        case = mr.Case(FIGURE_3, 0.5 * FIGURE_3.alpha, 60 * h)
+        t = mr.simulate(case, contacts, collisions=solver == "plain model", **options).t
+    np.testing.assert_allclose(np.diff(t)[:-1], steps * h, rtol=1e-9)
+
+
 def test_a_touch_is_the_start_of_a_window(one_sided, contacts):
     """Half a short step before the first pose in a new contact, the gap closes."""
     scene = mr.wall_scene(one_sided, contacts)

@@ -43,7 +43,7 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
     slides = course(scene, [[-SPEED, 0.0, 0.0]], 1.0, pose=start)
     control, setting = StepControl.from_scene(scene, slides, ACCURACY), Setting.of_run(scene, slides)
     with engine_of(scene) as engine:
-        engine.follow(h, pair_rows(scene, h, 0.25))
+        engine.set_step(h, pair_rows(scene, h, 0.25))
         engine.release(slides)
         engine.memory.velocity[:] = [-SPEED, 0.0, 0.0]
         sliding = Sliding.at_start(setting.points, coulomb=True)

@@ -20,17 +20,17 @@ from ...problem.masonry.histories import Support
 from ...quantities import GRAVITY, Array, Integers
 from ...scene.course import Course, mean_acceleration
 from ...scene.scene import Scene
-from ..model import require_well
+from ..model import require_finite
 from .pairs import Pairs
 from .pieces import Overlap, Piece
 
-LOOK = 1000
-"""Steps between two looks at warnings of the engine."""
-NEGLIGIBLE = 1e-4
+WARNINGS_CHECKED_EVERY = 1000
+"""Steps between two checks for warnings of the engine."""
+NEGLIGIBLE_DEPTH = 1e-4
 """Depth of a contact, over the smallest thickness of the two pieces, up to which an overlap is negligible [-]."""
 
 
-class Met(NamedTuple):
+class FoundContacts(NamedTuple):
     """The contacts that MuJoCo has found at a pose, those in the constraints.
 
     Args:
@@ -74,13 +74,13 @@ class PlainEngine:
         return np.array([numbers[self.model.geom(i).name] for i in range(self.model.ngeom)])
 
     @cached_property
-    def known(self) -> Integers:
-        """One number for the two pieces of each pair; they increase."""
+    def keys(self) -> Integers:
+        """One number for the two pieces of each pair, shape (p,); they increase."""
         return np.asarray(self.pairs.pieces @ np.array([len(self.pieces), 1]))
 
     @cached_property
     def inverse_weight(self) -> Array:
-        """Of the body of each geom [1/kg], shape (geoms,)."""
+        """Inverse weight of the body of each geom [1/kg], shape (geoms,)."""
         return np.asarray(self.model.body_invweight0[self.model.geom_bodyid, 0])
 
     @cached_property
@@ -108,28 +108,29 @@ class PlainEngine:
         """Numbers of the tendons with a dashpot."""
         return [self.scene.links.names.index(name) for name in self.scene.links.damped.names]
 
-    def met(self) -> Met:
+    def contacts(self) -> FoundContacts:
         """The contacts of the last step."""
         contact = self.data.contact
         number = np.flatnonzero(contact.efc_address >= 0)
         geoms = contact.geom[number]
         pieces = self.piece[geoms]
         key = np.sort(pieces, axis=1) @ np.array([len(self.pieces), 1])
-        at = np.minimum(np.searchsorted(self.known, key), len(self.known) - 1)
-        pair = np.where(self.known[at] == key, at, len(self.known))
-        weight = np.where(pair < len(self.known), 1.0, self.inverse_weight[geoms].sum(axis=1))
+        at = np.minimum(np.searchsorted(self.keys, key), len(self.keys) - 1)
+        pair = np.where(self.keys[at] == key, at, len(self.keys))
+        weight = np.where(pair < len(self.keys), 1.0, self.inverse_weight[geoms].sum(axis=1))
         k, gap = self.pairs.k[pair] / weight, contact.dist[number]
-        return Met(number, pair, k, contact.efc_address[number], gap, pieces)
+        return FoundContacts(number, pair, k, contact.efc_address[number], gap, pieces)
 
-    def deepest(self, met: Met, t: float, than: Overlap | None) -> Overlap | None:
-        """The deepest contact at the pose of a time [s], or the one that was found before where that is deeper."""
-        depth = -met.gap / self.thickness[met.pieces].min(axis=1)
+    def deepest(self, contacts: FoundContacts, t: float, before: Overlap | None) -> Overlap | None:
+        """The deepest contact at the pose of a time [s], or the one of an earlier time where that is deeper."""
+        depth = -contacts.gap / self.thickness[contacts.pieces].min(axis=1)
         i = int(depth.argmax()) if len(depth) else -1
-        if i < 0 or depth[i] <= (NEGLIGIBLE if than is None else than.depth):
-            return than
-        data, one, two = self.data, *(self.pieces[j] for j in met.pieces[i].tolist())
-        of = self.model.geom_bodyid[data.contact.geom[met.number[i]]]
-        return Overlap(float(depth[i]), t, (one, two), data.xpos[of].copy(), data.xmat[of].reshape(2, 3, 3).copy())
+        if i < 0 or depth[i] <= (NEGLIGIBLE_DEPTH if before is None else before.depth):
+            return before
+        data, first, second = self.data, *(self.pieces[j] for j in contacts.pieces[i].tolist())
+        bodies = self.model.geom_bodyid[data.contact.geom[contacts.number[i]]]
+        place, turn = data.xpos[bodies].copy(), data.xmat[bodies].reshape(2, 3, 3).copy()
+        return Overlap(float(depth[i]), t, (first, second), place, turn)
 
     def pose(self) -> Array:
         """Pose of the bodies as in a `Response`, shape (bodies, nq)."""
@@ -139,15 +140,19 @@ class PlainEngine:
         return pose
 
     def drive(self, course: Course, t: float) -> Array:
-        """Set gravity and moved supports for the step at a time [s]; the acceleration of the ground, shape (d,)."""
-        h, ground, ways = self.model.opt.timestep, course.ground, self.scene.freedom.axes
+        """Set gravity and moved supports for the step at a time [s].
+
+        Returns:
+            The mean acceleration of the ground in the step [m/s2], shape (d,).
+        """
+        h, ground, axes = self.model.opt.timestep, course.ground, self.scene.freedom.axes
         shaken = np.array([mean_acceleration(shaking, t, h) for shaking in (ground.x, ground.y, ground.z)])
         self.model.opt.gravity[:] = -shaken - (0.0, 0.0, GRAVITY)
         for i, support in enumerate(self.supports):
             before, here, after = support.at(np.array([t - 0.5 * h, t, t + 0.5 * h]))
-            for axis, place, rate in zip(ways, here, (after - before) / h, strict=True):
+            for axis, place, rate in zip(axes, here, (after - before) / h, strict=True):
                 self.data.qpos[3 * i + axis], self.data.qvel[3 * i + axis] = place, rate
-        return shaken[list(ways)]
+        return shaken[list(axes)]
 
 
 class Work(NamedTuple):
@@ -166,8 +171,8 @@ class Work(NamedTuple):
     damped: Array
 
     def plus(self, other: Work, share: float = 1.0) -> Work:
-        """This and a share of another one."""
-        return Work(*(mine + share * more for mine, more in zip(self, other, strict=True)))
+        """The sum of this work and a share of another one."""
+        return Work(*(own + share * added for own, added in zip(self, other, strict=True)))
 
 
 class Sample(NamedTuple):
@@ -179,7 +184,8 @@ class Sample(NamedTuple):
         elastic: energy in the springs of each pair and of all others [J], shape (p + 1,).
         work: since the release [J].
         deepest: the deepest contact since the sample before, if any.
-        loads, held: what was pressed on each joint and each fixed block, see `KeptForces`.
+        loads, held: forces of the contacts on each joint and each fixed block, see `KeptForces`; empty where none are
+            kept.
         pulled: force of each damper [N], shape (dampers,).
     """
 
@@ -201,7 +207,10 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
         engine: at the release.
         course: what happens.
         steps, stride: numbers of steps.
-        joints: gathers forces; None where they are not kept.
+        joints: computes forces; None where they are not kept.
+
+    Returns:
+        One sample after the other, the last at the end of the run.
 
     Raises:
         StepError: if the engine warns or the state is not finite.
@@ -219,39 +228,46 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
             mujoco.mj_step(engine.model, data)
             np.multiply(before + data.qvel, 0.5, out=mean)
             mean[: engine.driven] = before[: engine.driven]
-            met = engine.met()
-            done = work_of_step(engine, met, mean, shaken)
-            deepest = engine.deepest(met, t, deepest)
+            contacts = engine.contacts()
+            work = work_of_step(engine, contacts, mean, shaken)
+            deepest = engine.deepest(contacts, t, deepest)
             if pose is not None:
-                elastic = by_pair(engine, met, 0.5 * met.k * np.minimum(met.gap, 0.0) ** 2)
-                forces = (np.empty(0), np.empty(0)) if joints is None else joints.gathered(engine, met)
-                pulled = engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers]
-                velocity = mean[engine.driven :].reshape(-1, nv).copy()
-                found = [] if deepest is None else [deepest]
-                work = total.plus(done, 0.5)
-                samples.append(Sample(np.array(t), pose, velocity, elastic, work, found, *forces, pulled))
+                energies = 0.5 * contacts.k * np.minimum(contacts.gap, 0.0) ** 2
+                loads, held = (np.empty(0), np.empty(0)) if joints is None else joints.loads(engine, contacts)
+                sample = Sample(
+                    t=np.array(t),
+                    pose=pose,
+                    velocity=mean[engine.driven :].reshape(-1, nv).copy(),
+                    elastic=sums_by_pair(engine, contacts, energies),
+                    work=total.plus(work, 0.5),
+                    deepest=[] if deepest is None else [deepest],
+                    loads=loads,
+                    held=held,
+                    pulled=engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers],
+                )
+                samples.append(sample)
                 deepest = None
-            total = total.plus(done)
-            if n % LOOK == 0 or n == steps:
-                require_well(data, t)
+            total = total.plus(work)
+            if n % WARNINGS_CHECKED_EVERY == 0 or n == steps:
+                require_finite(data, t)
                 bar.to(t)
     return samples
 
 
-def by_pair(engine: PlainEngine, met: Met, values: Array) -> Array:
+def sums_by_pair(engine: PlainEngine, contacts: FoundContacts, values: Array) -> Array:
     """Sums of values of the contacts of each pair, and in the last place of all others, shape (p + 1,)."""
-    return np.asarray(np.bincount(met.pair, weights=values, minlength=len(engine.pairs.k)), dtype=float)
+    return np.asarray(np.bincount(contacts.pair, weights=values, minlength=len(engine.pairs.k)), dtype=float)
 
 
-def work_of_step(engine: PlainEngine, met: Met, mean: Array, shaken: Array) -> Work:
-    """Work in the step that was made, from the mean velocities and the acceleration of the ground."""
+def work_of_step(engine: PlainEngine, contacts: FoundContacts, mean: Array, shaken: Array) -> Work:
+    """Work in the step that was made, from mean velocities (nv,) and the acceleration of the ground (d,)."""
     data, h, own = engine.data, float(engine.model.opt.timestep), slice(engine.driven)
     ground = -h * float(shaken @ (engine.masses @ mean) + data.qfrc_constraint[own] @ mean[own])
     rates = np.zeros(data.nefc)
     if data.nefc:
         mujoco.mj_mulJacVec(engine.model, data, rates, mean)
     powers = rates * data.efc_force
-    pressed = by_pair(engine, met, h * powers[met.row])
+    pressed = sums_by_pair(engine, contacts, h * powers[contacts.row])
     rubbed = h * float(powers.sum()) - float(pressed.sum())
     damped = h * engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers] ** 2
     return Work(np.asarray(ground), pressed, np.asarray(rubbed), damped)
@@ -259,7 +275,7 @@ def work_of_step(engine: PlainEngine, met: Met, mean: Array, shaken: Array) -> W
 
 @dataclass(frozen=True, eq=False)
 class JointForces:
-    """What presses on joints and fixed blocks.
+    """Computes the forces on joints and fixed blocks.
 
     Args:
         joint: number of the joint of each pair and of all others, how many there are where it is none, shape (p + 1,).
@@ -271,21 +287,21 @@ class JointForces:
     above: Integers
     fixed: dict[str, int]
 
-    def gathered(self, engine: PlainEngine, met: Met) -> tuple[Array, Array]:
-        """Loads of joints and forces of fixed blocks, see `KeptForces`."""
+    def loads(self, engine: PlainEngine, contacts: FoundContacts) -> tuple[Array, Array]:
+        """Loads of joints, shape (joints, nv), and forces of fixed blocks, (blocks, d), see `KeptForces`."""
         freedom, model, data = engine.scene.freedom, engine.model, engine.data
-        ways, local = list(freedom.axes), np.zeros(6)
+        axes, local = list(freedom.axes), np.zeros(6)
         loads = np.zeros((len(self.above), freedom.nv))
         held = np.zeros((len(self.fixed), freedom.translations))
-        for number, pair, (first, second) in zip(met.number, met.pair, met.pieces, strict=True):
+        for number, pair, (first, second) in zip(contacts.number, contacts.pair, contacts.pieces, strict=True):
             mujoco.mj_contactForce(model, data, number, local)
             contact = data.contact[number]
             force = contact.frame.reshape(3, 3).T @ local[:3]  # on the second
             moment = np.cross(contact.pos, force)
             for piece, sense in ((engine.pieces[first], -1.0), (engine.pieces[second], 1.0)):
                 if piece.block in self.fixed:
-                    held[self.fixed[piece.block]] -= sense * force[ways]
+                    held[self.fixed[piece.block]] -= sense * force[axes]
                 elif self.joint[pair] < len(self.above) and piece.body == self.above[self.joint[pair]]:
                     about = moment if freedom != PLANE else moment[1:2]
-                    loads[self.joint[pair]] += sense * np.concatenate([force[ways], about])
+                    loads[self.joint[pair]] += sense * np.concatenate([force[axes], about])
         return loads, held

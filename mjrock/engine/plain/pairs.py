@@ -26,8 +26,8 @@ FRICTION_MASSES = 100.0
 """Inertia of a friction row of several bodies in masses of the body that it holds [-]. Under an acceleration a along
 its face a contact that sticks creeps at a h / FRICTION_MASSES. With ten times as much a step of thirty blocks takes 1.7
 times as long."""
-NOTHING = -2
-"""The body of what is only seen."""
+NO_BODY = -2
+"""Number of the body of a piece that is only seen."""
 POINTS = 4
 """Points that MuJoCo finds where two faces lie on each other [-]."""
 
@@ -58,31 +58,37 @@ class Pairs:
     def in_scene(cls, scene: Scene, pieces: list[Piece]) -> Pairs:
         """The pairs of pieces between which the scene has contacts."""
         contacts, bodies = scene.contacts, scene.bodies
-        first, second = _carriers(scene, pieces)
-        both = np.sort(np.stack([first, second], axis=1), axis=1)
-        found, some, of = np.unique(both, axis=0, return_index=True, return_inverse=True)
-        of = of.ravel()
-        sums = [np.bincount(of, weights=values) for values in (contacts.k, contacts.c, contacts.friction * contacts.k)]
-        k, c, friction = sums[0] / POINTS, sums[1] / POINTS, sums[2] / sums[0]
+        both = np.sort(np.stack(_carriers(scene, pieces), axis=1), axis=1)
+        jointed, line, pair = np.unique(both, axis=0, return_index=True, return_inverse=True)
+        k, c, rubbing = (
+            np.bincount(pair.ravel(), weights=values)
+            for values in (contacts.k, contacts.c, contacts.friction * contacts.k)
+        )
         inverse = np.append(body_weight(bodies.mass, scene.freedom.translations), 0.0)  # the last one of the ground
-        carrier = np.array([piece.body for piece in pieces])
-        weight = inverse[carrier[found]].sum(axis=1)
-        law = np.stack([weight, k, c, friction])
-        others = [1.0, *np.median([weight * k, weight * c, friction], axis=1)]
-        held = METHOD.held_masses if len(bodies.names) == 1 else FRICTION_MASSES
-        alone, given = _pairs_without_joint(scene, pieces, found)
-        heavy = inverse[carrier[alone]].sum(axis=1)
-        stiff = np.divide(others[1], heavy)
-        law = np.column_stack([law, [heavy, stiff, given[:, 1] * stiff, given[:, 0]]])
-        found = np.concatenate([found, alone])
-        order = np.lexsort(found.T[::-1])
-        none = np.full(len(alone) + 1, len(contacts.joints))
-        of_joint = np.append(contacts.joint[some], none)[np.append(order, len(found))]
-        weight, k, c, friction = np.column_stack([law[:, order], others])
-        return cls(found[order], of_joint, weight, k, c, friction, held)
+        of_piece = inverse[np.array([piece.body for piece in pieces])]
+        weight = of_piece[jointed].sum(axis=1)
+        laws = np.stack([weight, k / POINTS, c / POINTS, rubbing / k])
+        others = np.array([1.0, *np.median([weight * laws[1], weight * laws[2], laws[3]], axis=1)])
+        apart, properties = _pairs_without_joint(scene, pieces, jointed)
+        weight_apart = of_piece[apart].sum(axis=1)
+        k_apart = np.divide(others[1], weight_apart)
+        laws_apart = [weight_apart, k_apart, properties[:, 1] * k_apart, properties[:, 0]]
+        every = np.concatenate([jointed, apart])
+        order = np.lexsort(every.T[::-1])
+        joint = np.append(contacts.joint[line], np.full(len(apart), len(contacts.joints)))[order]
+        weight, k, c, friction = np.column_stack([laws, laws_apart])[:, order]
+        return cls(
+            pieces=every[order],
+            of_joint=np.append(joint, len(contacts.joints)),
+            weight=np.append(weight, others[0]),
+            k=np.append(k, others[1]),
+            c=np.append(c, others[2]),
+            friction=np.append(friction, others[3]),
+            friction_inertia=METHOD.held_masses if len(bodies.names) == 1 else FRICTION_MASSES,
+        )
 
     def rows(self, timestep: float) -> PairRows:
-        """What MuJoCo needs for the pairs at a step [s], see `mjrock.engine.rows`."""
+        """The parameters of MuJoCo for the pairs at a step [s], see `mjrock.engine.rows`."""
         count = len(self.k)
         solref, impedance, inertia = np.zeros((count, 2)), np.zeros(count), np.zeros(count)
         step = RowStep(timestep, overdamped=METHOD.borne)
@@ -106,22 +112,22 @@ class PairRows:
     impratio: float
 
 
-def _pairs_without_joint(scene: Scene, pieces: list[Piece], found: Integers) -> tuple[Integers, Array]:
+def _pairs_without_joint(scene: Scene, pieces: list[Piece], jointed: Integers) -> tuple[Integers, Array]:
     """Pieces of two blocks without a joint whose law the masonry gives, shape (n, 2), and the friction and dashpot over
     spring of each two, shape (n, 2)."""
-    alone, given = list[tuple[int, int]](), list[PairProperties]()
+    apart, properties = list[tuple[int, int]](), list[PairProperties]()
     if scene.springs is not None and scene.springs.pairs is not None:
         names = [solid.name for solid in scene.rest_geometry.solids]
-        jointed = {frozenset((pieces[a].block, pieces[b].block)) for a, b in found.tolist()}
+        neighbours = {frozenset((pieces[a].block, pieces[b].block)) for a, b in jointed.tolist()}
         by_block = {name: [i for i, each in enumerate(pieces) if each.block == name and each.meets] for name in names}
         for i, j in combinations(range(len(names)), 2):
-            one, other = by_block[names[i]], by_block[names[j]]
-            fixed = all(pieces[k].body == GROUND for k in (*one[:1], *other[:1]))
-            if fixed or {names[i], names[j]} in jointed or (meets := scene.springs.of_pair(i, j)) is None:
+            first, second = by_block[names[i]], by_block[names[j]]
+            fixed = all(pieces[k].body == GROUND for k in (*first[:1], *second[:1]))
+            if fixed or {names[i], names[j]} in neighbours or (own := scene.springs.of_pair(i, j)) is None:
                 continue
-            pairs = [(min(pair), max(pair)) for pair in product(one, other)]
-            alone, given = [*alone, *pairs], [*given, *[meets] * len(pairs)]
-    return np.reshape(alone, (-1, 2)).astype(np.int64), np.reshape(given, (-1, 2)).astype(float)
+            pairs = [(min(pair), max(pair)) for pair in product(first, second)]
+            apart, properties = [*apart, *pairs], [*properties, *[own] * len(pairs)]
+    return np.reshape(apart, (-1, 2)).astype(np.int64), np.reshape(properties, (-1, 2)).astype(float)
 
 
 def _carriers(scene: Scene, pieces: list[Piece]) -> tuple[Integers, Integers]:
@@ -137,7 +143,7 @@ def _nearest(pieces: list[Piece], body: Integers, points: Array, normals: Array)
     """The piece of its body on which each point lies, shape (m,), from points in the frame of the body [m] and the
     normals of the body there."""
     chosen, points, normals = np.zeros(len(points), dtype=np.int64), in_space(points), in_space(normals)
-    carrier = np.array([piece.body if piece.meets else NOTHING for piece in pieces])
+    carrier = np.array([piece.body if piece.meets else NO_BODY for piece in pieces])
     for j in np.unique(body):
         own, here = np.flatnonzero(carrier == j), body == j
         far = np.array([pieces[i].beside(points[here], normals[here]) for i in own])

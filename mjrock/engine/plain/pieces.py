@@ -15,7 +15,7 @@ from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array
 from ...scene.scene import Scene
 
-THIN = 1e-12
+LEAST_BALL = 1e-12
 """Radius of the largest ball within both solids up to which they have nothing in common, over their size [-]."""
 
 
@@ -61,7 +61,7 @@ class Piece:
 
     @cached_property
     def box(self) -> Cuboid | None:
-        """It as a box, however it is turned; None of any other body."""
+        """The solid as a box, however it is turned; None where it is none."""
         if self.shape.box is not None:
             return Cuboid(*self.shape.box, np.eye(3))
         corners, normals = self.shape.corners, self.shape.normals
@@ -81,11 +81,14 @@ class Piece:
         return not (self.is_ground or self.box)
 
     def beside(self, points: Array, normals: Array) -> Array:
-        """How far points with normals are from being on its surface, with the normals out of it [m], shape (n,)."""
+        """How far points are from its faces, with the normals of these as theirs [m], shape (n,).
+
+        A normal that differs from that of the face adds the size of the solid times one less the cosine between both.
+        """
         away = points @ self.shape.normals.T - self.shape.offsets
         size = float(np.ptp(self.shape.corners, axis=0).max())
-        off = np.abs(away) + size * (1 - normals @ self.shape.normals.T)
-        return np.asarray(off.min(axis=1) + np.maximum(away.max(axis=1), 0.0))
+        distances = np.abs(away) + size * (1 - normals @ self.shape.normals.T)
+        return np.asarray(distances.min(axis=1) + np.maximum(away.max(axis=1), 0.0))
 
 
 def pieces_of(scene: Scene) -> list[Piece]:
@@ -178,7 +181,7 @@ def common_volume(planes: Array) -> float:
     ball = scipy.optimize.linprog(
         (0, 0, 0, -1), np.column_stack([normals, np.ones(len(planes))]), -offsets, bounds=[(None, None)] * 4
     )
-    if ball.status != 0 or ball.x[3] <= THIN * np.abs(offsets).max():
+    if ball.status != 0 or ball.x[3] <= LEAST_BALL * np.abs(offsets).max():
         return 0.0
     inner = scipy.spatial.HalfspaceIntersection(planes, ball.x[:3])
     return float(scipy.spatial.ConvexHull(inner.intersections).volume)

@@ -16,7 +16,7 @@ from ...result.bodies import BodyMotion
 from ...result.ending import Outcome, Stopwatch
 from ...result.forces import Forces, KeptForces, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
-from ...result.motion import SampledMotion
+from ...result.motion import SampledMotion, whole_steps
 from ...result.problem import Problem, require_in_text
 from ...result.reading import BesidePoses
 from ...result.response import End, Response, State
@@ -26,9 +26,9 @@ from ...scene.dampers import damping_rate
 from ...scene.potential import energies
 from ...scene.scene import Scene
 from ..mjcf import Keyframe
-from ..model import SimulationError, released
+from ..model import SimulationError, set_release
 from ..options import SPACING, Options
-from ..run_warnings import require_known, warn_if_plain_is_slow, warn_if_sheared
+from ..run_warnings import require_for_mujoco, warn_if_plain_is_slow, warn_if_sheared
 from .follow import JointForces, PlainEngine, Sample, Work, follow
 from .pairs import Pairs
 from .pieces import Piece, pieces_of
@@ -37,16 +37,18 @@ from .text import plain_text
 RESOLVED, RESOLVED_OF_MANY = 0.1, 0.5
 """omega h of the step that is taken by default, omega the highest frequency of the closed contacts, of one body and of
 several [-] (`scripts/studies/plain_models.py`, `scripts/studies/plain_masonry.py`)."""
-STOPPING, STABLE_DAMPERS, SHORTER_FOR_DAMPERS = 0.02, 0.5, 0.1
-"""Step over the time m / C in which the strongest damper stops what it acts on, up to which that time is exact to 1 %,
-and up to which the step is stable with any contacts; and the least share of the step of the contacts to which dampers
-shorten it for the first of these [-]. MuJoCo's tendons damp the velocity half a step before the pose."""
-OPEN = 0.01
-"""Energy without an account that is warned of, over the largest part of the ledger [-]."""
-DOUBTED = 0.01
-"""Volume that two solids have in common that is warned of, over that of the smaller one [-]."""
-LOOKED_AT = 10
-"""How many of the deepest contacts are looked at for it."""
+RESOLVED_DAMPERS, STABLE_DAMPERS = 0.02, 0.5
+"""Step over the time m / C in which the strongest damper stops the body that it acts on: with the first that time is
+exact to 1 %, and up to the second the step is stable with any contacts [-]. MuJoCo's tendons damp the velocity half a
+step before the pose."""
+SHORTER_FOR_DAMPERS = 0.1
+"""Least share of the step of the contacts to which dampers shorten it so that they are resolved [-]."""
+UNPAID_OF_PLAIN = 0.01
+"""Energy without an account, over the largest part of the ledger, above which there is a warning [-]."""
+NOTABLE_OVERLAP = 0.01
+"""Volume that two solids have in common, over that of the smaller one, above which there is a warning [-]."""
+OVERLAPS_COMPUTED = 10
+"""Of how many of the deepest contacts the common volume is computed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +93,7 @@ class PlainModel:
         model = mujoco.MjModel.from_xml_string(self.text(timestep))
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # what breaks down ends the run
         data = mujoco.MjData(model)
-        released(model, data, *self.start)
+        set_release(model, data, *self.start)
         return PlainEngine(model, data, self.scene, self.pieces, self.pairs, self.problem.case.supports)
 
     def released_text(self, timestep: float) -> str:
@@ -105,25 +107,26 @@ class PlainRun:
     """A run of a plain model.
 
     Args:
-        of: the model.
+        model: the model.
         at: all samples, one after the other.
     """
 
-    of: PlainModel
+    model: PlainModel
     at: Sample
 
     @classmethod
-    def of_samples(cls, of: PlainModel, samples: list[Sample]) -> PlainRun:
+    def of_samples(cls, model: PlainModel, samples: list[Sample]) -> PlainRun:
         """The run that went through some samples."""
         parts = dict(zip(Sample._fields, zip(*samples, strict=True), strict=True))
-        works = Work(*map(np.array, zip(*parts.pop("work"), strict=True)))
-        found = [one for some in parts.pop("deepest") for one in some]
-        return cls(of, Sample(work=works, deepest=found, **{name: np.array(part) for name, part in parts.items()}))
+        work = Work(*map(np.array, zip(*parts.pop("work"), strict=True)))
+        deepest = [overlap for overlaps in parts.pop("deepest") for overlap in overlaps]
+        arrays = {name: np.array(part) for name, part in parts.items()}
+        return cls(model, Sample(work=work, deepest=deepest, **arrays))
 
     @cached_property
     def stored(self) -> tuple[Array, Array]:
-        """Kinetic, potential and elastic energy [J], shape (n, 3), and what ties have taken, shape (n, ties)."""
-        scene, at, flat = self.of.scene, self.at, (len(self.at.t), -1)
+        """Kinetic, potential and elastic energy [J], shape (n, 3), and what ties have taken [J], shape (n, ties)."""
+        scene, at, flat = self.model.scene, self.at, (len(self.at.t), -1)
         without = scene.structure._replace(places=scene.places._replace(law=np.zeros_like(scene.places.law)))
         parts, taken = energies(without, at.pose.reshape(flat), at.velocity.reshape(flat))
         parts[:, 2] += at.elastic.sum(axis=1)
@@ -132,17 +135,17 @@ class PlainRun:
     @cached_property
     def energy(self) -> Array:
         """Energy above the scene at rest [J], shape (n,): that of the start, and what has been added since."""
-        held = self.stored[0].sum(axis=1)
-        return np.asarray(held - held[0] + self.of.course.energy(self.of.scene))
+        total = self.stored[0].sum(axis=1)
+        return np.asarray(total - total[0] + self.model.course.energy(self.model.scene))
 
     def ledger(self) -> Ledger:
         """Where the energy is, and what took it."""
-        (parts, taken), at, work, scene = self.stored, self.at, self.at.work, self.of.scene
+        (parts, taken), at, work, scene = self.stored, self.at, self.at.work, self.model.scene
         lost = -(work.pressed - work.pressed[0]) - (at.elastic - at.elastic[0])
         groups = (*scene.contacts.joints, "encounters")
-        of = self.of.pairs.of_joint
-        dashpots = {name: lost[:, of == i].sum(axis=1) for i, name in enumerate(groups)}
-        if len(scene.bodies.names) == 1 and not self.of.problem.case.joints:
+        of_joint = self.model.pairs.of_joint
+        dashpots = {name: lost[:, of_joint == i].sum(axis=1) for i, name in enumerate(groups)}
+        if len(scene.bodies.names) == 1 and not self.model.problem.case.joints:
             dashpots.pop("encounters")
         damped = dict(zip(scene.links.damped.names, (work.damped - work.damped[0]).T, strict=True))
         return Ledger(
@@ -159,7 +162,7 @@ class PlainRun:
     @cached_property
     def overlap(self) -> tuple[float, str]:
         """The largest volume that two solids have in common, over that of the smaller one [-], and where, in words."""
-        shares = [(one.share, one) for one in sorted(self.at.deepest, key=lambda one: -one.depth)[:LOOKED_AT]]
+        shares = [(one.share, one) for one in sorted(self.at.deepest, key=lambda one: -one.depth)[:OVERLAPS_COMPUTED]]
         if not shares:
             return 0.0, ""
         share, worst = max(shares, key=lambda pair: pair[0])
@@ -167,14 +170,14 @@ class PlainRun:
         return share, f"{names} lie inside each other by {share:.1%} at {worst.t:.4g} s"
 
     def plastic(self) -> dict[str, Plastic]:
-        """What each tie has yielded."""
-        taken, links = self.stored[1][-1], self.of.scene.links.sprung
+        """How far each tie has yielded."""
+        taken, links = self.stored[1][-1], self.model.scene.links.sprung
         never = np.full(len(taken), np.inf)
-        return plastic_of(self.of.scene, taken / links.law["strength"], taken, never, np.zeros(len(taken)))
+        return plastic_of(self.model.scene, taken / links.law["strength"], taken, never, np.zeros(len(taken)))
 
     def forces(self, plastic: dict[str, Plastic]) -> Forces:
         """The forces of joints, links and fixed blocks."""
-        case, links, at = self.of.problem.case, self.of.scene.links, self.at
+        case, links, at = self.model.problem.case, self.model.scene.links, self.at
         ties = motion_of_ties(BodyMotion(case, at.t, at.pose), plastic)
         pulled = {name: ties[name].force for name in links.sprung.names}
         pulled |= dict(zip(links.damped.names, at.pulled.T, strict=True))
@@ -202,10 +205,10 @@ def simulate_plain(problem: Problem, options: Options, state: State | None) -> R
     warn_if_plain_is_slow(scene, course.duration, h)
     model, watch = PlainModel(problem, scene, course), Stopwatch()
     frames = case.rest_geometry.frames
-    gathers = JointForces(model.pairs.of_joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
-    steps, stride = max(1, round(course.duration / h)), max(1, round(spacing / h))
+    joints = JointForces(model.pairs.of_joint, frames.above, {name: i for i, name in enumerate(frames.blocks)})
+    steps, stride = max(1, round(course.duration / h)), whole_steps(spacing, h)
     try:
-        samples = follow(model.engine(h), course, steps, stride, gathers if options.forces else None)
+        samples = follow(model.engine(h), course, steps, stride, joints if options.forces else None)
     except StepError as error:
         raise SimulationError(f"{error} at t = {error.t:.4g} s with a step of {h:.3g} s; halve the step") from None
     stats = {"steps": steps, "timestep": h, "resolved": h * scene.highest_frequency, **watch.stepping()}
@@ -220,7 +223,8 @@ def plain_timestep(scene: Scene, spacing: float) -> float:
     resolved = RESOLVED if len(scene.bodies.names) == 1 else RESOLVED_OF_MANY
     decay = damping_rate(scene.dampers, scene.potential.unmoved, scene.bodies.principal)
     shorter = min(
-        decay / STOPPING, max(scene.highest_frequency / (SHORTER_FOR_DAMPERS * resolved), decay / STABLE_DAMPERS)
+        decay / RESOLVED_DAMPERS,
+        max(scene.highest_frequency / (SHORTER_FOR_DAMPERS * resolved), decay / STABLE_DAMPERS),
     )
     return spacing / math.ceil(spacing * max(scene.highest_frequency / resolved, shorter))
 
@@ -228,7 +232,7 @@ def plain_timestep(scene: Scene, spacing: float) -> float:
 def require_plain(case: AnyCase) -> None:
     """Raise a ValueError for what no plain model has: bonds, effects of explicit steps, ties that break or that are
     anchored on supports that move."""
-    require_known(case)
+    require_for_mujoco(case)
     require_in_text(case)
     moved = {support.block for support in case.supports}
     for name, link in case.links.items():
@@ -240,18 +244,18 @@ def require_plain(case: AnyCase) -> None:
 
 def response_of_plain(run: PlainRun, settings: dict[str, float], options: Options) -> Response:
     """The response of a run."""
-    model, at, motion = run.of, run.at, SampledMotion(run.at.pose, run.at.velocity, run.energy)
+    model, at, motion = run.model, run.at, SampledMotion(run.at.pose, run.at.velocity, run.energy)
     encounters = model.pairs.of_joint == len(model.scene.contacts.joints)
     elsewhere = bool((at.elastic[:, encounters] > 0).any())
     beside = BesidePoses(np.zeros(len(model.scene.contacts.k)), elsewhere, {})
     reading = model.problem.read(model.scene, at.t, motion, released=model.course.released, beside=beside)
     plastic, account = run.plastic(), run.ledger()
     overlap, message = run.overlap
-    if overlap > DOUBTED:
+    if overlap > NOTABLE_OVERLAP:
         warn_of(f"{message}, over the smaller one; a shorter timestep or stiffer joints keep them apart")
     residual = float(np.abs(account.residual).max())
     advice = f"the step is long for this motion, take timestep = {0.5 * settings['timestep']:.2g} s"
-    warn_if_open(residual, account.largest, OPEN, "its largest part", lambda share: advice)
+    warn_if_open(residual, account.largest, UNPAID_OF_PLAIN, "its largest part", lambda share: advice)
     return Response(
         case=model.problem.case,
         solver="plain MuJoCo",

@@ -18,7 +18,7 @@ from ...geometry.frames import PLANE
 from ...quantities import GRAVITY
 from ...scene.parts import GROUND
 from ...scene.scene import Scene
-from ..mjcf import SPARSE_FROM, Keyframe, camera_of, extent_of, forced, linked
+from ..mjcf import SPARSE_FROM, Keyframe, camera_of, extent_of, force_elements, link_elements
 from ..shapes import BALL, HINGE, in_space, inertia_of_body, section, sites, tag, tints
 from .pairs import POINTS, PairRows, Pairs
 from .pieces import Piece
@@ -35,7 +35,7 @@ HEAD = """\
           solver="Newton" iterations="100" tolerance="1e-16"{rows}><flag island="disable"/></option>
 """
 OTHERS = " Any two solids without a joint have the W k and W c of the median joint."
-LOOKS = (
+ASSETS = (
     '<texture type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.62 0.7 0.8" width="16" height="96"/>',
     '<texture name="edges" type="cube" builtin="flat" mark="edge" markrgb="0.2 0.15 0.12" rgb1="1 1 1" rgb2="1 1 1" '
     'width="128" height="128"/>',
@@ -43,17 +43,19 @@ LOOKS = (
 )
 """The sky, and the edges of boxes: a texture that is stretched over each face and dark along its border."""
 SUN = (-0.2, 0.6, -0.9)
+"""Direction of the light."""
 VISUAL = (
     '<visual><global azimuth="110" elevation="-12" offwidth="1280" offheight="960"/><map shadowclip="2" zfar="20"/>'
     '<headlight ambient="0.25 0.25 0.27" diffuse="0.25 0.25 0.25" specular="0 0 0"/></visual>'
 )
-"""Half the width of what casts shadows and the depth of what is seen, over half the extent."""
+"""Camera and light of viewers. `shadowclip` is half the width of what casts shadows and `zfar` the depth of what is
+seen, both over half the extent."""
 PLASTER = (0.85, 0.82, 0.76, 1)
 """Colour of fixed blocks and the ground."""
 SUPPORT_MASS = 1e12
 """Mass of a fixed block that is moved: nothing on it moves it [kg]."""
-ROUNDING = 1e-15
-"""Coordinates that are zero but for their rounding [m]."""
+ZERO_COORDINATE = 1e-15
+"""Coordinate up to which it is zero but for rounding [m]."""
 MEMORY_OF_PIECE = 0.25
 """Room for the contacts of a piece, beside eight for all [MiB]."""
 
@@ -61,7 +63,7 @@ MEMORY_OF_PIECE = 0.25
 def number_text(values: object) -> str:
     """Numbers with twelve digits; what is less than 1e-15 is a rounding of zero."""
     numbers = np.ravel(np.asarray(values, dtype=float))
-    return " ".join(f"{number:.12g}" for number in np.where(np.abs(numbers) < ROUNDING, 0.0, numbers).tolist())
+    return " ".join(f"{number:.12g}" for number in np.where(np.abs(numbers) < ZERO_COORDINATE, 0.0, numbers).tolist())
 
 
 def text_of(value: object) -> str:
@@ -112,15 +114,15 @@ def plain_text(
         element("statistic", center=in_space(middle), extent=2 * half),
         VISUAL,
         *section("default", (f"  {line}" for line in _defaults(scene, pairs, rows, laws, mixes=mixes))),
-        *section("asset", (f"  {line}" for line in [*LOOKS, *shapes])),
+        *section("asset", (f"  {line}" for line in [*ASSETS, *shapes])),
         "<worldbody>",
         "  " + _sun(np.array(in_space(middle)), half),
         "  " + element("camera", name="front", **camera_of(scene, middle, half), fovy="28"),
         *(f"  {line}" for line in _world(scene, pieces, moved)),
         "</worldbody>",
         *section("contact", (f"  {line}" for line in [*_pairs(pieces, pairs, laws), *_apart(moved)])),
-        *section("tendon", linked(scene)),
-        *section("actuator", forced(scene)),
+        *section("tendon", link_elements(scene)),
+        *section("actuator", force_elements(scene)),
         *section("keyframe", iter(["  " + tag("key", name="release", **keyframe.values)])),
     ]
     return head + "".join(f"  {line}\n" for line in body) + "</mujoco>\n"
