@@ -39,12 +39,12 @@ PACKAGE = __name__.partition(".")[0]
 """The package that this one is a part of."""
 WARNED = f"__{PACKAGE}_warned__"
 """Name under which the module of a user keeps which of its lines were warned of what."""
-PASSED = (PACKAGE, "functools", "contextlib")
+PASSED_OVER = (PACKAGE, "functools", "contextlib")
 """Packages whose lines a warning does not point to."""
 MOST_SAMPLES = 50_000_000
 """Most samples or fixed steps of one answer: some gigabytes."""
 MOST_LISTED = 1_000_000
-"""Most values of an argument that is a list of things."""
+"""Most values of an argument that is a list."""
 
 
 class Message(str):
@@ -118,7 +118,7 @@ def _same(value: object, default: object) -> bool:
 
 
 def _shortened(value: object) -> str:
-    """A value on a line: a long row by how many values it has."""
+    """A value on a line: of a long row the number of its values."""
     if isinstance(value, np.ndarray | tuple | list):
         return f"<{len(value)} values>" if len(value) > NAMED else f"({', '.join(map(_shortened, value))})"
     return f"{value:.6g}" if isinstance(value, float) else spelt(value)
@@ -131,7 +131,7 @@ def warn_of(message: str, kind: type[Warning] = UserWarning, *, once: str = "") 
     a hundred motions at one line. The module of that line knows what it was warned of, as it does for `warnings`.
     """
     level, frame = 2, sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in PASSED:
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in PASSED_OVER:
         level, frame = level + 1, frame.f_back
     warned = frame.f_globals.setdefault(WARNED, set())
     if once and (key := (once, frame.f_code, frame.f_lineno)) in warned:
@@ -278,7 +278,7 @@ def keep_declared(instance: object, owner: str = "", but: Collection[str] = ()) 
 
     Args:
         instance: the dataclass.
-        owner: the thing that messages name as the owner of the number, as in "length of the tie".
+        owner: the object that messages name as the owner of the number, as in "length of the tie".
         but: fields that are left as they are.
 
     Raises:
@@ -470,10 +470,10 @@ def _finite(name: str, array: Array) -> Array:
 
 
 NAMED = 5
-"""Most things that a message names."""
+"""Most names in a message."""
 
 
 def named(names: Sequence[str]) -> str:
-    """Names in a message, not too many."""
+    """Names in a message: the first NAMED, and how many more there are."""
     rest = len(names) - NAMED
     return ", ".join(names[:NAMED]) + (f" and {rest} more" if rest > 0 else "")

@@ -1,4 +1,4 @@
-"""`mjrock inspect model.xml`: what the contacts of a MuJoCo model are in N/m and N s/m.
+"""`mjrock inspect model.xml`: the contacts of a MuJoCo model in N/m and N s/m.
 
 The worst contacts come first, and equal notes are given once. A line has at most 80 columns where names are short."""
 
@@ -16,13 +16,13 @@ import mujoco
 
 from .checks import named, require_within
 from .files import aligned, csv_text, write_text
-from .geoms import BODY, GeomPair, geom_label, load, names_of_objects
+from .geoms import BODY, GeomPair, geom_label, keyframe_argument, load, names_of_objects
 from .inspect import InspectedContact, inspect_contacts, inspect_flexes
-from .notes import VARIES, model_spoilers
+from .notes import VARYING_PARTS, model_caveats
 
 NUMBERS = ("k [N/m]", "k loaded", "c [N s/m]", "mass [kg]", "row adds", "d", "points", "xi", "e", "e at v")
 HEADER = ("geom", "geom", "by", *NUMBERS, "notes")
-IN_SHORT = [
+COLUMNS_OF_PAGE = [
     True,
     True,
     False,
@@ -34,16 +34,16 @@ GAINS_NOTE, LONG, IMMOBILE = "it can gain energy", "is long for it", ("mass is i
 """Parts of notes that put a contact first or last in the table."""
 
 
-def is_of(found: GeomPair, geoms: Sequence[str], bodies: Sequence[str], pair: Sequence[str] | None) -> bool:
+def has_names(both: GeomPair, geoms: Sequence[str], bodies: Sequence[str], pair: Sequence[str] | None) -> bool:
     """Whether two geoms have names that match, with the wildcards `*`, `?` and `[...]`.
 
     Args:
-        found: the geoms.
+        both: the geoms.
         geoms, bodies: names of geoms and of bodies, of which it has at least one; none are all.
         pair: names of its two geoms or bodies, in any order; None are all.
     """
-    sides = list(zip(found.labels, found.body_names, strict=True))
-    if (geoms and not _like(found.labels, geoms)) or (bodies and not _like(found.body_names, bodies)):
+    sides = list(zip(both.labels, both.body_names, strict=True))
+    if (geoms and not _like(both.labels, geoms)) or (bodies and not _like(both.body_names, bodies)):
         return False
     return pair is None or any(
         all(_like(side, [pattern]) for side, pattern in zip(order, pair, strict=True)) for order in (sides, sides[::-1])
@@ -86,13 +86,13 @@ def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, mo
     alike: dict[str, list[str]] = {}
     for contact in found:
         for note in contact.notes:
-            alike.setdefault(VARIES.sub("#", note), []).append(note)
+            alike.setdefault(VARYING_PARTS.sub("#", note), []).append(note)
     numbers = {key: number for number, key in enumerate(alike, 1)}
     rows = []
     for contact in shown:
-        marks = sorted({numbers[VARIES.sub("#", note)] for note in contact.notes})
+        marks = sorted({numbers[VARYING_PARTS.sub("#", note)] for note in contact.notes})
         rows.append([*values(contact, speed), ",".join(str(mark) for mark in marks)])
-    head, *body = aligned([list(HEADER), *rows] if most is None else short([list(HEADER), *rows]))
+    head, *body = aligned([list(HEADER), *rows] if most is None else rows_of_page([list(HEADER), *rows]))
     lines = [head, "-" * len(head), *body]
     if most is not None:
         more = f"and {len(found) - len(shown)} more; " if len(shown) < len(found) else ""
@@ -104,9 +104,9 @@ def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, mo
     return "\n".join(lines)
 
 
-def short(rows: Sequence[Sequence[str]]) -> list[list[str]]:
-    """The columns of a page; rows that differ in their second geom alone are one, which says how many are like it."""
-    kept = [list(itertools.compress(row, IN_SHORT)) for row in rows]
+def rows_of_page(rows: Sequence[Sequence[str]]) -> list[list[str]]:
+    """Rows with the columns of a page. Those that differ in their second geom alone are one, with their number."""
+    kept = [list(itertools.compress(row, COLUMNS_OF_PAGE)) for row in rows]
     groups: dict[tuple[str, ...], list[list[str]]] = {}
     for row in kept:
         groups.setdefault((row[0], *row[2:]), []).append(row)
@@ -140,7 +140,7 @@ def flex_report(model: mujoco.MjModel) -> str:
     found = [str(contact) for contact in inspect_flexes(model)]
     if not found:
         return ""
-    remarks = [f"For all of them: {sentence}." for sentence in model_spoilers(model)]
+    remarks = [f"For all of them: {sentence}." for sentence in model_caveats(model)]
     return "\n".join(["", "Contacts of flexes, at zero penetration:", *found, *remarks])
 
 
@@ -176,7 +176,7 @@ def answer(args: argparse.Namespace) -> str:
     """
     if not args.model.is_file():
         raise FileNotFoundError(f"model {args.model} is not a file")
-    keyframe = int(args.keyframe) if args.keyframe is not None and args.keyframe.isdecimal() else args.keyframe
+    keyframe = keyframe_argument(args.keyframe)
     model = load(args.model)
     require_names(model, [*args.geom, *args.body, *(args.pair or ())])
     found = inspect_contacts(
@@ -185,7 +185,7 @@ def answer(args: argparse.Namespace) -> str:
         contacts=args.contacts,
         keyframe=keyframe,
         load=args.load,
-        chosen=lambda pair: is_of(pair, args.geom, args.body, args.pair),
+        chosen=lambda pair: has_names(pair, args.geom, args.body, args.pair),
     )
     chosen = worst_first(found)
     if args.csv is not None:

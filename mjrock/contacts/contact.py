@@ -17,36 +17,37 @@ from .notes import (
     ENOUGH,
     SCATTER_WARNED_OF,
     UNSOUND,
-    VARIES,
+    VARYING_PARTS,
     ContactWarning,
     SolverNeed,
     duplicates,
     few_iterations,
-    model_spoilers,
+    model_caveats,
     resolving_step,
     rounded_down,
     stiffest,
-    uneven,
+    uneven_ground,
 )
 from .rebound import MOST_PULL, deepest, rebound_at, rebound_restitution
-from .row_of_model import HOLD, WRITTEN, Mixed, ModelRow
+from .row_of_model import HOLDING_RATE, WRITTEN, ModelRow, PairParameters
 from .solref import inertia_of
 
 Attribute = str | float | tuple[float, ...]
 """Of an element of MJCF."""
 SOFT_DEPTH = 0.01
 """Static depth over the smallest half extent of the geoms from which a contact is called soft [-]."""
-GAINS = 0.5
+GAINS_ENERGY_FROM = 0.5
 """omega h from which a contact of the pyramidal cone is reported to gain energy [-]. Undamped it rebounds with 1.03
 there, with 1.09 at 0.9 and with 2.4 at 1.9."""
 NO_REBOUND, SMALL_REBOUND = 0.03, 0.2999
-"""Restitutions between which gravity is warned of where no speed is given [-]."""
-SAME = 0.05
-"""Change of stiffness from which a contact is another [-]."""
-KEPT_WITHIN = 0.1
-"""Change of stiffness within which a contact is kept [-]; 5 % for MuJoCo's impedance of 0.9 to 0.95 and mu = 1.5."""
+"""Restitutions between which there is a warning of the effect of gravity where no speed is given [-]."""
+NOTABLE_CHANGE = 0.05
+"""Change of the stiffness of another contact by the options from which there is a warning [-]."""
+KEEPS_STIFFNESS = 0.1
+"""Largest change of stiffness with which a contact counts as kept [-]; it is 5 % for MuJoCo's impedance of 0.9 to 0.95
+and mu = 1.5."""
 LEAST_SPEED, MOST_SPEED = 1e-9, 1e4
-"""Speeds of approach that are looked at [m/s]."""
+"""Range of speeds in which the one is searched at which gravity halves a small restitution [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -194,12 +195,12 @@ class PairContact:
             model, on_geoms=on_geoms, keep_others=keep_others, iterations=iterations, name_geoms=name_geoms
         )
 
-    def put_into(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
+    def write_pair(self, model: mujoco.MjModel | mujoco.MjSpec, whole: mujoco.MjModel, on_geoms: bool) -> None:
         """Write the pair into a model or a specification, of which `whole` is the compiled model; not the options."""
         geoms = self._pair_in(whole)
         if isinstance(model, mujoco.MjSpec):
             self._require_names()
-            self.of_pair.write_spec(_spec_pair(model, geoms))
+            self.parameters.write_spec(_spec_pair(model, geoms))
         elif geoms.explicit >= 0 or on_geoms:
             self.write_numbers(model, geoms)
         else:
@@ -229,7 +230,7 @@ class PairContact:
         self._require_names()
         names = ["condim", "solref", "solimp", "margin", "gap", "adhesion"]
         names += ["solreffriction", "friction"] if self.condim > 1 else []
-        numbers = {name: getattr(self.of_pair, name) for name in names if name in WRITTEN}
+        numbers = {name: getattr(self.parameters, name) for name in names if name in WRITTEN}
         return {"geom1": self.geom1, "geom2": self.geom2, **numbers}
 
     @property
@@ -238,16 +239,24 @@ class PairContact:
         return PairContacts((self,)).options
 
     @property
-    def of_pair(self) -> Mixed:
-        """The numbers of the explicit pair."""
-        rows = self.solref, self.solimp, self.solreffriction
-        return Mixed(*rows, self.friction, self.condim, margin=0.0, gap=self.gap, adhesion=self.adhesion)
+    def parameters(self) -> PairParameters:
+        """The parameters of the explicit pair."""
+        return PairParameters(
+            solref=self.solref,
+            solimp=self.solimp,
+            solreffriction=self.solreffriction,
+            friction=self.friction,
+            condim=self.condim,
+            margin=0.0,
+            gap=self.gap,
+            adhesion=self.adhesion,
+        )
 
     def write_numbers(self, model: mujoco.MjModel, pair: GeomPair) -> None:
         """Write the numbers into the explicit pair of a compiled model or, without one, into both geoms, which mix to
         the contact, as equal geoms of equal priority do; margin, gap and adhesion add up."""
         if pair.explicit >= 0:
-            self.of_pair.write(model, pair.explicit)
+            self.parameters.write(model, pair.explicit)
             return
         geoms = list(pair.geoms)
         model.geom_margin[geoms], model.geom_gap[geoms] = 0.0, 0.5 * self.gap
@@ -272,7 +281,7 @@ class PairContact:
             return replace(self, geom1=prefix + self.geom1, geom2=prefix + self.geom2).caveats(model)
         pair = self._pair_in(compiled_model(model))
         few = few_iterations(pair.model.opt, self.needs)
-        return (*missing(pair, self), *spoilers(pair, self), *few, *self.remarks)
+        return (*missing(pair, self), *remaining_caveats(pair, self), *few, *self.remarks)
 
     def __str__(self) -> str:
         """Its numbers as one line of text."""
@@ -374,7 +383,7 @@ class PairContacts:
                 (pair, ModelRow.from_pair(pair)) for pair in every_pair(whole) if frozenset(pair.geoms) not in written
             ]
         for contact in contacts:
-            contact.put_into(model, whole, on_geoms)
+            contact.write_pair(model, whole, on_geoms)
         for each in (option, whole.opt):
             each.timestep = h
             if self.has_friction:
@@ -384,8 +393,8 @@ class PairContacts:
                 setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
             if iterations:
                 each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
-        found = [StiffnessChange(pair, before, ModelRow.from_pair(pair)) for pair, before in others]
-        changed = [each for each in found if not math.isclose(*each.stiffness, rel_tol=SAME)]
+        changes = [StiffnessChange(pair, before, ModelRow.from_pair(pair)) for pair, before in others]
+        changed = [each for each in changes if not math.isclose(*each.stiffness, rel_tol=NOTABLE_CHANGE)]
         changed = [each for each in changed if not (keep_others and _keep(model, each))]
         if changed:
             warn_of(changes_message(changed), ContactWarning)
@@ -408,7 +417,7 @@ def merged(sentences: Iterable[tuple[PairContact, str]]) -> Iterator[str]:
     names is given in full."""
     alike: dict[str, dict[str, list[str]]] = {}
     for contact, sentence in sentences:
-        alike.setdefault(VARIES.sub("#", sentence), {}).setdefault(sentence, []).append(contact.label)
+        alike.setdefault(VARYING_PARTS.sub("#", sentence), {}).setdefault(sentence, []).append(contact.label)
     for (sentence, about), *others in (each.items() for each in alike.values()):
         rest = list(dict.fromkeys(label for _, labels in others for label in labels))
         yield f"{named(about)}: {sentence}" + (f" [and alike for {named(rest)}]" if rest else "")
@@ -440,12 +449,13 @@ class StiffnessChange(NamedTuple):
     after: ModelRow
 
     @property
-    def kept(self) -> Mixed | None:
+    def kept(self) -> PairParameters | None:
         """Parameters of an explicit pair that keep its row as before; None where MuJoCo has no such row.
 
         With the pyramidal cone the rows of a contact with friction are as stiff as one row of the elliptic cone times
-        `Mixed.pyramid`, f. A contact is kept by a row that is f times as large in all three of its numbers. For K
-        [1/s2], B [1/s] and the impedance d these are K d / R, B / R and 1 / R with 1 / R = d / ((1 - d) W), so that
+        `PairParameters.pyramid`, f. A contact is kept by a row that is f times as large in all three of its numbers.
+        For K [1/s2], B [1/s] and the impedance d these are K d / R, B / R and 1 / R with 1 / R = d / ((1 - d) W), so
+        that
 
             d' = f d / (1 - d + f d),    K' = K d / d',    B' = B.
 
@@ -459,7 +469,7 @@ class StiffnessChange(NamedTuple):
         spring = before.spring * math.sqrt(d * dw / (near * full))
         made = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
         load, row = self.pair.load, ModelRow(self.pair.model, self.pair.inverse_weight, made)
-        return made if math.isclose(row.loaded(load), before.loaded(load), rel_tol=KEPT_WITHIN) else None
+        return made if math.isclose(row.loaded(load), before.loaded(load), rel_tol=KEEPS_STIFFNESS) else None
 
     @property
     def stiffness(self) -> tuple[float, float]:
@@ -494,25 +504,25 @@ def _keep(model: mujoco.MjModel | mujoco.MjSpec, changed: StiffnessChange) -> bo
     return True
 
 
-def spoilers(pair: GeomPair, contact: PairContact) -> Iterator[str]:
-    """What `apply` does not correct, one sentence each."""
+def remaining_caveats(pair: GeomPair, contact: PairContact) -> Iterator[str]:
+    """Reasons that `apply` does not correct, one sentence each."""
     model = pair.model
-    yield from model_spoilers(model)
+    yield from model_caveats(model)
     yield from duplicates(pair)
     if pair.explicit < 0 and (reason := reason_for_no_contact(pair)):
         yield f"MuJoCo keeps these geoms apart, since {reason}; an explicit <pair> overrides that and lets them collide"
-    mixed = Mixed.from_pair(pair)
+    mixed = PairParameters.from_pair(pair)
     if mixed.margin != 0:
         yield f"it has a margin of {mixed.margin:g} m, at which the spring begins; apply writes a margin of 0"
     if mixed.adhesion != 0:
         within = f" within {mixed.gap:g} m" if mixed.gap else ""
         yield f"it has an adhesion of {mixed.adhesion:g} N a point, with which the contact pulls{within}"
     if pair.is_uneven:
-        yield uneven(contact.contacts)
-    yield from step_spoilers(contact)
+        yield uneven_ground(contact.contacts)
+    yield from step_caveats(contact)
 
 
-def weight_spoilers(contact: PairContact) -> Iterator[str]:
+def weight_caveats(contact: PairContact) -> Iterator[str]:
     """The effect of weight on a small restitution, as a sentence."""
     e = rebound_restitution(contact.xi)
     if contact.speed is not None or contact.gravity <= 0 or not NO_REBOUND < e < SMALL_REBOUND:
@@ -527,7 +537,7 @@ def weight_spoilers(contact: PairContact) -> Iterator[str]:
     )
 
 
-def soft_spoilers(contact: PairContact, model_k: float, thickness: float) -> Iterator[str]:
+def soft_caveats(contact: PairContact, model_k: float, thickness: float) -> Iterator[str]:
     """Where the stiffest contact that the step resolves is soft under the weight: against that of the model [N/m], and
     against the smallest half extent of the geoms [m]."""
     h, k = contact.timestep, contact.k
@@ -546,26 +556,27 @@ def soft_spoilers(contact: PairContact, model_k: float, thickness: float) -> Ite
         )
 
 
-def blow_spoilers(contact: PairContact, pair: GeomPair) -> Iterator[str]:
+def blow_caveats(contact: PairContact, pair: GeomPair) -> Iterator[str]:
     """Where a blow at the speed of the contact goes deeper than the smallest half extent of the geoms, as a sentence.
     A plane and a height field have no other side."""
     if contact.speed is None or pair.has_one_side:
         return
     pull = min(contact.gravity / (contact.frequency * contact.speed), MOST_PULL)
-    way, thickness, h = contact.speed * contact.timestep, pair.thickness, contact.timestep
-    deep = max(contact.speed / contact.frequency * deepest(min(contact.xi, 1e6), pull), way)
-    if deep <= thickness:
+    thickness, h = pair.thickness, contact.timestep
+    in_a_step = contact.speed * h
+    depth = max(contact.speed / contact.frequency * deepest(min(contact.xi, 1e6), pull), in_a_step)
+    if depth <= thickness:
         return
-    k = 1.01 * contact.k * (deep / thickness) ** 2
-    step = min(resolving_step(k, 2 * contact.xi * math.sqrt(k * contact.mass), contact.mass), h * thickness / way)
+    k = 1.01 * contact.k * (depth / thickness) ** 2
+    step = min(resolving_step(k, 2 * contact.xi * math.sqrt(k * contact.mass), contact.mass), h * thickness / in_a_step)
     yield (
-        f"a blow at {contact.speed:g} m/s goes {deep:.2g} m deep, {deep / thickness:.2g} times the smallest half "
+        f"a blow at {contact.speed:g} m/s goes {depth:.2g} m deep, {depth / thickness:.2g} times the smallest half "
         "extent of the geoms, from where MuJoCo may push it out on the other side; "
         f"k = {k:.3g} N/m stops it within that, and {rounded_down(min(h, step))} s resolves it"
     )
 
 
-def step_spoilers(contact: PairContact) -> Iterator[str]:
+def step_caveats(contact: PairContact) -> Iterator[str]:
     """The effect of a long step on the restitution, as a sentence."""
     h, omega = contact.timestep, contact.frequency
     longest = resolving_step(contact.k, contact.c, contact.mass)
@@ -583,8 +594,8 @@ def step_spoilers(contact: PairContact) -> Iterator[str]:
 
 
 def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
-    """What a model lacks that `apply` would write."""
-    option, mixed = pair.model.opt, Mixed.from_pair(pair)
+    """Parameters and options that `apply` would write and a model lacks, one sentence each."""
+    option, mixed = pair.model.opt, PairParameters.from_pair(pair)
     names = ["solref", "solimp"] + (["friction"] if contact.condim > 1 else [])
     if pair.explicit < 0:
         yield "the model has no explicit <pair> of the geoms, so that MuJoCo mixes the parameters of the two geoms"
@@ -607,7 +618,7 @@ def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
     if option.cone != mujoco.mjtCone.mjCONE_ELLIPTIC:
         yield f"the friction cone is pyramidal, which {_pyramidal(pair, contact)}"
     if option.impratio < contact.impratio * (1 - 1e-5):
-        held = HOLD * float(option.impratio) / contact.impratio
+        held = HOLDING_RATE * float(option.impratio) / contact.impratio
         yield (
             f"impratio = {option.impratio:g} is below {contact.impratio:g}: sliding changes the normal force, and a "
             f"load F that friction holds creeps at F / ({held:.2g} 1/s m)"
@@ -615,12 +626,16 @@ def missing(pair: GeomPair, contact: PairContact) -> Iterator[str]:
 
 
 def _pyramidal(pair: GeomPair, contact: PairContact) -> str:
-    """What the pyramidal cone does to a contact: all three numbers of the row grow, the mass and the step do not."""
-    factor, h, d = Mixed.from_pair(pair).pyramid(float(pair.model.opt.impratio)), contact.timestep, contact.solimp[0]
+    """The effect of the pyramidal cone on a contact: all numbers of the row grow, the mass and the step do not."""
+    factor, h, d = (
+        PairParameters.from_pair(pair).pyramid(float(pair.model.opt.impratio)),
+        contact.timestep,
+        contact.solimp[0],
+    )
     dashpot = -contact.solref[1] / ((1 - d) * contact.inverse_weight)
     used = 0.0 if contact.integrator == "RK4" else 0.5 * h * dashpot
     inertia = factor * max(0.0, inertia_of(d, contact.inverse_weight) - used)
     text = f"makes stiffness and damping of a contact with friction {factor:.3g} times as large"
-    if h * math.sqrt(factor * contact.k / (contact.mass + inertia)) <= GAINS:
+    if h * math.sqrt(factor * contact.k / (contact.mass + inertia)) <= GAINS_ENERGY_FROM:
         return text
     return f"{text}: the step is too long for it, and the contact can gain energy; set cone to elliptic"

@@ -18,9 +18,9 @@ from .versions import field
 
 FRICTION_ITERATIONS = 10
 """Most iterations for the friction in a step."""
-KNOWN = 1e-6
+CONVERGED = 1e-6
 """Change of the friction in an iteration at which it has converged, as a share of it [-]."""
-SATURATED = 0.99
+SLIDES_FROM = 0.99
 """Friction over mu times the normal force from which on a contact is taken to slide [-]."""
 WITHOUT_SLIP = np.zeros(2)
 VELOCITY = int(mujoco.mjtStage.mjSTAGE_VEL)
@@ -117,8 +117,8 @@ class CoulombFriction:
         self.release(data)
         self._data = data
         mujoco.mj_forward(self.model, data)
-        self._moving, pairs = self._surface(data), self._find(data)
-        while pairs and (stopped := self._settle(data, pairs)):
+        self._moving, pairs = self._surface(data), self._sliding_pairs(data)
+        while pairs and (stopped := self._find_friction(data, pairs)):
             pairs -= stopped
             self.model.pair_dim[:] = self.dimensions
             data.qfrc_applied[:] = self._remaining[:] = self._applied
@@ -153,7 +153,7 @@ class CoulombFriction:
         number, pairs, rows = np.reshape(np.array(pressing, dtype=np.int64), (-1, 3)).T
         return number, pairs, rows
 
-    def _find(self, data: mujoco.MjData) -> set[int]:
+    def _sliding_pairs(self, data: mujoco.MjData) -> set[int]:
         """The pairs of which every contact that presses slides through the step."""
         _, pairs, rows = self._pressing(data)
         if not len(rows):
@@ -162,13 +162,13 @@ class CoulombFriction:
         mujoco.mj_mulJacVec(self.model, data, later, data.qacc)
         slip, forces = data.efc_vel[tangents], data.efc_force
         shares = forces[tangents] / np.maximum(self.model.pair_friction[pairs, :2], mujoco.mjMINMU)
-        saturated = (shares**2).sum(axis=1) >= (SATURATED * forces[rows]) ** 2
+        saturated = (shares**2).sum(axis=1) >= (SLIDES_FROM * forces[rows]) ** 2
         onward = (slip * (slip + self.model.opt.timestep * later[tangents])).sum(axis=1) > 0
         sticks = {int(pair) for pair in pairs[~(saturated & onward)]}
         return {int(pair) for pair in pairs} - sticks
 
-    def _settle(self, data: mujoco.MjData, pairs: set[int]) -> set[int]:
-        """Find the friction of the pairs that slide; those of them that it stops within the step."""
+    def _find_friction(self, data: mujoco.MjData, pairs: set[int]) -> set[int]:
+        """Find the friction of the pairs that slide, and return those that it stops within the step."""
         model, h = self.model, float(self.model.opt.timestep)
         model.pair_dim[:] = self.dimensions
         model.pair_dim[list(pairs)] = 1
@@ -191,7 +191,7 @@ class CoulombFriction:
             pull *= (data.efc_force[rows] / np.maximum(size, 1e-300))[:, None]
             force = -np.einsum("ij,ijk->k", pull, tangents)
             data.qfrc_applied[:] = self._applied + force
-            if stops.any() or np.abs(force - before).max(initial=0) <= KNOWN * np.abs(force).max(initial=0):
+            if stops.any() or np.abs(force - before).max(initial=0) <= CONVERGED * np.abs(force).max(initial=0):
                 break
             before = force
             mujoco.mj_forwardSkip(model, data, VELOCITY, 1)

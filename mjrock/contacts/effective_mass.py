@@ -147,15 +147,15 @@ def _actuators(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Array, Array
     for name in ("actuator_length", "actuator_velocity"):
         values = getattr(data, name)
         before = np.array(values)
-        values += ACTUATOR_CHANGE
+        values += ACTUATOR_PROBE
         mujoco.mj_fwdActuation(model, data)
-        found.append(np.maximum((kept - data.actuator_force) / ACTUATOR_CHANGE, 0.0))
+        found.append(np.maximum((kept - data.actuator_force) / ACTUATOR_PROBE, 0.0))
         values[:] = before
     mujoco.mj_fwdActuation(model, data)
     return found[0], found[1]
 
 
-ACTUATOR_CHANGE = 1e-6
+ACTUATOR_PROBE = 1e-6
 """Change of the length and of the speed of an actuator at which its force is read [m or rad, and per second]."""
 
 
@@ -163,13 +163,13 @@ RIGID_CONSTRAINT = 5.0
 """Frequency of an equality constraint over that of the contact above which it counts as rigid without a note [-]."""
 RIGID_IN_MASS = 1.0
 """Ratio of these frequencies above which it is rigid in the mass. A slower one adds only the inertia of its row."""
-TIED = 0.05
+SLIDING_FREEDOM = 0.05
 """A point of which friction leaves less than this share of its freedom along the normal slides as it lands [-]."""
 WITHOUT_FREEDOM = 1e-10
 """A point of which rigid constraints leave less than this share of its freedom cannot approach [-]; it is rounding."""
 FALL_ALIKE = 1e-9
 """Share of the accelerations of the joints up to which two bodies fall alike [-]."""
-MATTERS = 0.02
+NOTABLE_FREEDOM = 0.02
 """A constraint that changes the mass by less than this share gets no sentence [-]."""
 LIMITS = (int(mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT), int(mujoco.mjtConstraint.mjCNSTR_LIMIT_TENDON))
 EQUALITY = int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)
@@ -195,9 +195,14 @@ class EffectiveMass:
     yielding: tuple[int, ...]
     limits: tuple[int, ...]
 
+    @classmethod
+    def immovable(cls, velocities: int) -> EffectiveMass:
+        """Of geoms that cannot approach each other, with a number of velocities of the joints."""
+        return cls(math.inf, slides=False, motion=np.zeros(velocities), gravity=0.0, yielding=(), limits=())
+
 
 class PointLaw(NamedTuple):
-    """What the effective mass of a contact depends on in its law.
+    """The numbers of the law of a contact on which its effective mass depends.
 
     Args:
         friction: coefficient of friction [-], with which the point sticks as long as it can.
@@ -210,7 +215,7 @@ class PointLaw(NamedTuple):
     frequency: float | None = None
 
     def together(self, count: int) -> PointLaw:
-        """That of a number of such points as one."""
+        """The law of a number of such points as one."""
         return self if self.k is None else self._replace(k=count * self.k)
 
 
@@ -219,19 +224,19 @@ FRICTIONLESS = PointLaw()
 
 
 def effective_mass(
-    pair: GeomPair, held: PoseConstraints, away: Array, points: tuple[Array, Array], law: PointLaw
+    pair: GeomPair, constraints: PoseConstraints, away: Array, points: tuple[Array, Array], law: PointLaw
 ) -> EffectiveMass:
     """The effective mass of a contact in a pose, and what else acts on it.
 
     Args:
         pair: the geoms.
-        held: the pose, and its constraints.
+        constraints: of the pose.
         away: unit vector along which the first geom parts from the second, shape (3,).
         points: the contact point on each of the geoms, in the world's frame [m].
         law: of the contact.
     """
     friction, k, frequency = law
-    model, data = held.model, held.data
+    model, data = constraints.model, constraints.data
     jacobian = np.zeros((3, model.nv))
     for body, point, sign in zip(pair.bodies, points, (1.0, -1.0), strict=True):
         rows = np.zeros((3, model.nv))
@@ -239,35 +244,35 @@ def effective_mass(
         jacobian += sign * rows
     rows = with_tangents(away) @ jacobian
     if not np.any(np.abs(rows[0]) > 1e-9):
-        return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
-    free = held.free(rows)
-    soft = held.answer(free, held.softness, held.equality)
+        return EffectiveMass.immovable(model.nv)
+    free = constraints.free(rows)
+    soft = constraints.answer(free, constraints.softness, constraints.equality)
     mass = _mass(soft, rows, friction)[0]
     if frequency is None:
         frequency = math.sqrt(k / mass) if k is not None and mass < math.inf else 0.0
-    limit = ~held.equality
-    softness = np.where((held.rate < RIGID_IN_MASS * frequency) | limit, held.softness, 0.0)
-    answer = held.answer(free, softness, held.equality)
+    limit = ~constraints.equality
+    softness = np.where((constraints.rate < RIGID_IN_MASS * frequency) | limit, constraints.softness, 0.0)
+    answer = constraints.answer(free, softness, constraints.equality)
     if not _free(answer, rows) > WITHOUT_FREEDOM * _free(free, rows):
-        return EffectiveMass(math.inf, False, np.zeros(model.nv), 0.0, (), ())
+        return EffectiveMass.immovable(model.nv)
     mass, impulse = _mass(answer, rows, friction)
-    slides = mass == math.inf or bool(friction > 0 and _free(answer, rows) * TIED > _stuck(answer, rows))
+    slides = mass == math.inf or bool(friction > 0 and _free(answer, rows) * SLIDING_FREEDOM > _stuck(answer, rows))
     if slides:
         mass, impulse = 1 / _free(answer, rows), np.array((1.0, 0.0, 0.0))
     motion = answer @ impulse
     motion = motion / float(rows[0] @ motion)
-    yields = (held.rate < RIGID_CONSTRAINT * frequency) & held.equality
-    matters = not math.isclose(_free(free, rows), _free(answer, rows), rel_tol=MATTERS)
-    pressed = limit & (held.rows @ motion < -1e-9 * np.abs(held.rows).max(initial=1.0))
-    limited = held.answer(free, softness, held.equality | pressed) if pressed.any() else answer
-    stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=MATTERS)
+    yields = (constraints.rate < RIGID_CONSTRAINT * frequency) & constraints.equality
+    matters = not math.isclose(_free(free, rows), _free(answer, rows), rel_tol=NOTABLE_FREEDOM)
+    pressed = limit & (constraints.rows @ motion < -1e-9 * np.abs(constraints.rows).max(initial=1.0))
+    limited = constraints.answer(free, softness, constraints.equality | pressed) if pressed.any() else answer
+    stops = not math.isclose(_free(limited, rows), _free(answer, rows), rel_tol=NOTABLE_FREEDOM)
     return EffectiveMass(
         mass=mass,
         slides=slides,
         motion=motion,
-        gravity=_together(-held.weight * answer[:, 0]),
-        yielding=tuple(sorted({int(number) for number in held.number[yields]})) if matters else (),
-        limits=tuple(int(row) for row in held.row[pressed]) if stops else (),
+        gravity=_together(-constraints.weight * answer[:, 0]),
+        yielding=tuple(sorted({int(number) for number in constraints.number[yields]})) if matters else (),
+        limits=tuple(int(row) for row in constraints.row[pressed]) if stops else (),
     )
 
 

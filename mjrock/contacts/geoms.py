@@ -47,6 +47,11 @@ def load(path: Path) -> mujoco.MjModel:
     return read(str(require_file(path)))
 
 
+def keyframe_argument(text: str | None) -> str | int | None:
+    """A keyframe of a command line: a number where the text is one, otherwise a name."""
+    return int(text) if text is not None and text.isdecimal() else text
+
+
 def compiled_model(model: mujoco.MjModel | mujoco.MjSpec) -> mujoco.MjModel:
     """The compiled model of either. An MjSpec itself is compiled, and stays as it is: MuJoCo 4.0 ends the process
     where a copy does not compile for a keyframe of a nested attachment.

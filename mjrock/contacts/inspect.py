@@ -21,18 +21,18 @@ from .notes import (
     IMMOVABLE,
     UNSOUND,
     duplicates,
-    holding,
-    model_spoilers,
+    model_caveats,
     other_keyframes,
     resolving_step,
+    restraint_caveats,
     rounded_down,
-    shape_spoilers,
-    turned,
-    uneven,
+    shape_caveats,
+    turn_caveats,
+    uneven_ground,
     unknown_landing,
 )
 from .rebound import rebound_at, rebound_restitution
-from .row_of_model import Mixed, ModelRow
+from .row_of_model import ModelRow, PairParameters
 
 
 @dataclass(frozen=True)
@@ -180,17 +180,17 @@ def _notes(
 ) -> Iterator[str]:
     yield from duplicates(pair)
     yield from row.notes()
-    yield from shape_spoilers(pair, pose)
+    yield from shape_caveats(pair, pose)
     if frozenset(pair.geoms) in pose.resting and found.load <= NO_LOAD < pair.load:
         yield "it touches in this pose and carries nothing at rest"
-    yield from turned(pair, pose, found.k)
+    yield from turn_caveats(pair, pose, found.k)
     yield from _step_notes(found, float(pair.model.opt.timestep))
-    yield from model_spoilers(pair.model)
+    yield from model_caveats(pair.model)
     if met.neighbours.level:
         others = len(met.neighbours.level)
         yield f"it lands together with {others} other contact{'s' * (others > 1)} of its bodies, and shares the mass"
     if pair.is_uneven:
-        yield uneven(found.points)
+        yield uneven_ground(found.points)
     elif contacts == 1 and pair.makes_several_points:
         yield (
             "it can have several points: xi and e are those of a single one that bears the whole mass; contacts=None "
@@ -208,7 +208,7 @@ def _notes(
         return
     yield from unknown_landing(pair, pose)
     if found.k > 0:
-        yield from holding(pose, met.effective, found.k * met.points, found.xi)
+        yield from restraint_caveats(pose, met.effective, found.k * met.points, found.xi)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
         yield from other_keyframes(pair, pose, met, contacts, row.mixed.sliding)
 
@@ -282,7 +282,7 @@ def _flex_contacts(model: mujoco.MjModel) -> Iterator[FlexContact]:
         for geom in np.flatnonzero(model.geom_contype & masks | model.geom_conaffinity & kinds).tolist():
             weights = model.body_invweight0[model.geom_bodyid[geom], 0] + vertices
             if weights.max() > 0:
-                mixed = Mixed.of_sides(model, (("geom", geom), ("flex", flex)))
+                mixed = PairParameters.of_sides(model, (("geom", geom), ("flex", flex)))
                 ends = (weights.max(), weights[weights > 0].min())
                 rows = [ModelRow(model, float(weight), mixed) for weight in ends]
                 name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, flex) or f"[{flex}]"

@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 import mujoco
 
 from .checks import Array, Within, keep_declared, named, require_within, shown, spelt, warn_of, within_ranges
-from .contact import PairContact, PairContacts, blow_spoilers, merged, soft_spoilers, spoilers, weight_spoilers
+from .contact import PairContact, PairContacts, blow_caveats, merged, remaining_caveats, soft_caveats, weight_caveats
 from .effective_mass import PointLaw
 from .geoms import BODY, GEOM, NO_LOAD, GeomPair, compiled_model, geom_id, makes, names_of_objects
 from .meeting import Keyframe, Neighbours, PairMeeting, Pose, meeting_of_geoms
@@ -21,18 +21,18 @@ from .notes import (
     UNSOUND,
     ContactWarning,
     few_iterations,
-    holding,
     other_keyframes,
     resolving_step,
+    restraint_caveats,
     rounded_down,
-    shape_spoilers,
+    shape_caveats,
     stiffest,
-    turned,
+    turn_caveats,
     unknown_landing,
     yielding_joints,
 )
 from .rebound import MOST_PULL, falling_damping, rebound_damping
-from .row_of_model import Grip, Mixed, ModelRow, unused
+from .row_of_model import FrictionParameters, ModelRow, PairParameters, unused
 from .solref import WITHIN, RowStep, inertia_of, longest_represented_step, pair_values, row
 from .solver_trial import solver_need
 
@@ -120,21 +120,25 @@ def contact_for(
             and stiffness or damping that MuJoCo cannot represent at this step.
 
     Warns:
-        ContactWarning: of what in the model spoils the contact and is not mended by `apply`, of a long step, of what
-            else holds the bodies, of geoms that MuJoCo keeps apart, of geoms that share the mass, of a keyframe in
-            which the contact stops another mass, of faces to which a small turn gives more points or that meet in one,
-            of a cylinder that stands on a plane, of a blow at `speed` that is deeper than the geoms, of a solver that
-            has too few iterations, does not converge or is not tried, and without k of a contact that is soft.
+        ContactWarning: with a sentence for each reason for which the contact differs from the request.
+
+            * The model: an option that changes every contact, geoms that MuJoCo keeps apart, or a solver that has too
+              few iterations, does not converge or is not tried.
+            * The step: it is too long for the contact, or without k the stiffest contact that it resolves is soft.
+            * The mass: other geoms share it, a constraint or a spring also holds the bodies, or the contact stops
+              another mass in a keyframe.
+            * The shapes: a small turn gives two faces more points, two faces meet in one point, a cylinder stands on a
+              plane, or a blow at `speed` is deeper than the geoms.
     """
-    given = locals()
+    arguments = locals()
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
-    request = ContactRequest(**{each.name: given[each.name] for each in fields(ContactRequest)})
+    request = ContactRequest(**{each.name: arguments[each.name] for each in fields(ContactRequest)})
     pose = Pose(whole, keyframe, qpos)
-    made = _made(pose, [(pair, request)])
-    for _, sentence in _sentences(whole, made):
+    contacts_made = _contacts(pose, [(pair, request)])
+    for _, sentence in _sentences(whole, contacts_made):
         warn_of(sentence, ContactWarning)
-    return made.contacts[0]
+    return contacts_made.contacts[0]
 
 
 @within_ranges
@@ -149,8 +153,8 @@ def stiffest_contacts(
 ) -> tuple[PairContact, ...]:
     """The stiffest contact of two geoms that a time step resolves, for each of some coefficients of restitution.
 
-    A step resolves a contact that rebounds with nearly what is requested wherever in a step the geoms touch. It is
-    shortest for restitutions of 0.2 to 0.4. `.k`, `.depth` and `.restitution` say what can be had.
+    A step resolves a contact whose restitution is nearly the requested one wherever in a step the geoms touch. The
+    stiffness that it resolves is least for restitutions of 0.2 to 0.4: see `.k`, `.depth` and `.restitution`.
 
     Args:
         model: a compiled model or a specification; it is not changed.
@@ -194,7 +198,7 @@ def contacts_for(
 
     Raises:
         TypeError, ValueError: as `contact_for` does, and for names that nothing has, wildcards of which MuJoCo lets
-            none collide, or two geoms named twice without wildcards.
+            none collide, or two geoms that an earlier entry names without wildcards.
 
     Warns:
         ContactWarning: as `contact_for` does, sentences that are alike once, with the geoms that they are about.
@@ -206,38 +210,42 @@ def contacts_for(
             '{("foot*", "floor"): {"k": 5e4, "restitution": 0.2}}'
         )
     pose = Pose(whole, keyframe, qpos)
-    meant: dict[frozenset[int], tuple[tuple[int, int], ContactRequest, bool]] = {}
+    requests: dict[frozenset[int], tuple[tuple[int, int], ContactRequest]] = {}
+    without_wildcards = set[frozenset[int]]()
     for key, values in pairs.items():
         request = _request(key, values, timestep)
-        for geoms in _meant(whole, key):
-            if not meant.get(frozenset(geoms), (geoms, request, True))[2]:
+        for geoms in _geoms_named(whole, key):
+            both = frozenset(geoms)
+            if both in without_wildcards:
                 raise ValueError(f"pairs name the geoms {GeomPair(whole, geoms).labels} twice, last by {shown(key)}")
-            meant[frozenset(geoms)] = geoms, request, any(map(_is_wild, key))
-    if not meant:
+            requests[both] = geoms, request
+            if not any(map(_is_wild, key)):
+                without_wildcards.add(both)
+    if not requests:
         raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
-    made = _made(pose, [(GeomPair.named(whole, *geoms), request) for geoms, request, _ in meant.values()])
-    for sentence in merged(_sentences(whole, made)):
+    contacts = _contacts(pose, [(GeomPair.named(whole, *geoms), request) for geoms, request in requests.values()])
+    for sentence in merged(_sentences(whole, contacts)):
         warn_of(sentence, ContactWarning)
-    return made
+    return contacts
 
 
-def _made(pose: Pose, request: Sequence[tuple[GeomPair, ContactRequest]]) -> PairContacts:
+def _contacts(pose: Pose, requests: Sequence[tuple[GeomPair, ContactRequest]]) -> PairContacts:
     """The requested contacts in a pose, with the iterations that they need and remarks on what lands with each."""
-    found = [contact_of(pair, pose, each) for pair, each in request]
-    made = {frozenset(contact.ids): contact for contact, _ in found}
+    made = [contact_of(pair, pose, request) for pair, request in requests]
+    by_geoms = {frozenset(contact.ids): contact for contact, _ in made}
     landed = {
-        frozenset(pair.geoms): (contact, pose.along(each.normal).landing(pair))
-        for (pair, each), (contact, _) in zip(request, found, strict=True)
+        frozenset(pair.geoms): (contact, pose.along(request.normal).landing(pair))
+        for (pair, request), (contact, _) in zip(requests, made, strict=True)
     }
     needs = solver_need(pose, tuple(landed.values()))
-    whole = (replace(beside(contact, neighbours, made), needs=needs) for contact, neighbours in found)
+    whole = (replace(with_neighbours(contact, neighbours, by_geoms), needs=needs) for contact, neighbours in made)
     return PairContacts(tuple(whole))
 
 
 def _sentences(model: mujoco.MjModel, contacts: PairContacts) -> Iterator[tuple[PairContact, str]]:
     """Reasons for which contacts differ from the request, each with its contact."""
     for contact in contacts:
-        own = spoilers(GeomPair(model, contact.ids), contact)
+        own = remaining_caveats(GeomPair(model, contact.ids), contact)
         for sentence in (*own, *few_iterations(model.opt, contact.needs, contacts.impratio), *contact.remarks):
             yield contact, sentence
 
@@ -247,13 +255,13 @@ def _request(key: object, values: object, timestep: float | None) -> ContactRequ
         raise TypeError(f"pairs have the key {shown(key)}; it has to be two geoms, such as ('foot*', 'floor')")
     if not isinstance(values, Mapping):
         raise TypeError(f"pairs of {shown(key)} = {shown(values)} has to be arguments of contact_for by name")
-    unknown = [str(name) for name in values if name not in TAKES]
+    unknown = [str(name) for name in values if name not in REQUEST_NAMES]
     if unknown:
-        raise ValueError(f"pairs of {shown(key)} have {named(unknown)}; each takes {', '.join(TAKES)}")
+        raise ValueError(f"pairs of {shown(key)} have {named(unknown)}; each takes {', '.join(REQUEST_NAMES)}")
     return ContactRequest(**values, timestep=timestep)
 
 
-def _meant(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[tuple[int, int]]:
+def _geoms_named(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[tuple[int, int]]:
     """The numbers of the geoms that a key names; with wildcards, of those for which MuJoCo makes contacts."""
     firsts, seconds = (
         _matching(model, argument, value) for argument, value in zip(("geom1", "geom2"), key, strict=True)
@@ -325,9 +333,9 @@ class ContactRequest:
         if self.mass is not None and self.at is not None:
             raise ValueError(f"mass = {shown(self.mass)} and at = {shown(self.at)} are both given; give one of them")
         losses = {"c": self.c, "restitution": self.restitution, "xi": self.xi}
-        given = {name: value for name, value in losses.items() if value is not None}
-        if len(given) != 1:
-            listed = ", ".join(f"{name} = {spelt(value)}" for name, value in given.items()) or "none"
+        loss = [f"{name} = {spelt(value)}" for name, value in losses.items() if value is not None]
+        if len(loss) != 1:
+            listed = ", ".join(loss) or "none"
             raise ValueError(f"exactly one of c, restitution and xi has to be given; given are {listed}")
         named_k = {name: getattr(self, name) for name in ("k", "k_face", "k_n", "depth")}
         stiffness = [f"{name} = {spelt(value)}" for name, value in named_k.items() if value is not None]
@@ -363,17 +371,17 @@ class ContactRequest:
         return replace(self, k=k, k_face=None, k_n=None, depth=None)
 
 
-TAKES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
+REQUEST_NAMES = tuple(field.name for field in fields(ContactRequest) if field.name != "timestep")
 """Arguments that each contact of several may have."""
 
 
 def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[PairContact, Neighbours]:
-    """The contact of a pair in a pose, with `remarks` on how it differs from the request, and what lands
-    with it."""
+    """The contact of a pair in a pose, with `remarks` on how it differs from the request, and the geoms that land with
+    it."""
     option, pose = pair.model.opt, pose.along(request.normal)
     request = request.by_point(pair, pose)
     h = require_within("timestep", option.timestep if request.timestep is None else request.timestep, 1e-12, 1e3, "s")
-    grip, mixed = Grip.from_pair(pair, request.friction), Mixed.from_pair(pair)
+    grip, mixed = FrictionParameters.from_pair(pair, request.friction), PairParameters.from_pair(pair)
     met = meeting_of_geoms(
         pair,
         pose,
@@ -416,20 +424,27 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
         pose=pose.label,
         load=pose.load(pair, met.points, request.contacts) if request.load is None else request.load / met.points,
     )
-    remarks = [*unused(request.friction, grip), *shape_spoilers(pair, pose), *turned(pair, pose, k)]
+    remarks = [*unused(request.friction, grip), *shape_caveats(pair, pose), *turn_caveats(pair, pose, k)]
     remarks += _remarks(pair, pose, request, met, PointLaw(grip.sliding, k), c)
     if request.restitution is not None:
-        remarks += weight_spoilers(contact)
-    remarks += blow_spoilers(contact, pair)
+        remarks += weight_caveats(contact)
+    remarks += blow_caveats(contact, pair)
     if request.k is None:
-        remarks += soft_spoilers(contact, ModelRow.from_pair(pair).loaded(contact.load), pair.thickness)
+        remarks += soft_caveats(contact, ModelRow.from_pair(pair).loaded(contact.load), pair.thickness)
     return replace(contact, remarks=tuple(remarks)), met.neighbours
 
 
-def beside(contact: PairContact, neighbours: Neighbours, made: Mapping[frozenset[int], PairContact]) -> PairContact:
-    """The contact with `remarks` on what lands with it: what is not `made` the same, and what is not level."""
+def with_neighbours(
+    contact: PairContact, neighbours: Neighbours, contacts: Mapping[frozenset[int], PairContact]
+) -> PairContact:
+    """The contact with `remarks` on the geoms that land with it and do not have the same contact, or are not level.
+
+    Args:
+        contact, neighbours: the contact, and the geoms that land with it.
+        contacts: all that were requested, by the numbers of their geoms.
+    """
     label = {pair: " on ".join(pair.labels) for pair in (*neighbours.level, *neighbours.separate)}
-    others = {pair: made.get(frozenset(pair.geoms)) for pair in label}
+    others = {pair: contacts.get(frozenset(pair.geoms)) for pair in label}
     unlike = [label[pair] for pair in neighbours.level if not (other := others[pair]) or not contact.is_like(other)]
     apart = [label[pair] for pair in neighbours.separate if others[pair]]
     level = f"give the pose in which the bodies stand level, not {contact.pose}"
@@ -485,7 +500,7 @@ def _remarks(
     if request.at is None:
         yield from unknown_landing(pair, pose)
     yield from yielding_joints(pair, pose, met, law, xi, speed)
-    yield from holding(pose, met.effective, law.k * met.points, xi, speed)
+    yield from restraint_caveats(pose, met.effective, law.k * met.points, xi, speed)
     if request.c is None and request.at is None:
         yield from other_keyframes(pair, pose, met, request.contacts, law.friction)
 
@@ -511,7 +526,7 @@ def _row(k: float, c: float, mass: float, inverse_weight: float, step: EngineSte
     is longer than 1 / omega could throw a touch back with more energy than it came with. There the row has the extra
     dashpot h k and beta = 1/2 at least, with which e stays below 0.6 whatever the step.
     """
-    h, newmark_beta, staged = step
+    h, newmark_beta = step.h, step.newmark_beta
     longest = longest_represented_step(k, inverse_weight)
     if h > longest:
         resolving = min(longest, resolving_step(k, c, mass))
@@ -530,4 +545,4 @@ def _row(k: float, c: float, mass: float, inverse_weight: float, step: EngineSte
         )
     if inertia > inertia_of(WITHIN[1], inverse_weight):
         raise ValueError(f"newmark_beta = {newmark_beta:g} asks for more inertia than MuJoCo represents; lower it")
-    return dashpot, inertia_of(WITHIN[0], inverse_weight) if staged and sound else inertia
+    return dashpot, inertia_of(WITHIN[0], inverse_weight) if step.staged and sound else inertia

@@ -1,11 +1,11 @@
-"""`mjrock measure model.xml ball floor`: what a contact does in steps of MuJoCo, beside what its numbers promise."""
+"""`mjrock measure model.xml ball floor`: a contact in steps of MuJoCo, compared with its numbers."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
-from .geoms import load
+from .geoms import keyframe_argument, load
 from .measurement import measure
 
 
@@ -26,7 +26,7 @@ def answer(args: argparse.Namespace) -> str:
         ValueError, TypeError, OSError: for what the user can mend.
         ImportError: for a picture without Matplotlib.
     """
-    keyframe = int(args.keyframe) if args.keyframe is not None and args.keyframe.isdecimal() else args.keyframe
+    keyframe = keyframe_argument(args.keyframe)
     found = measure(load(args.model), *args.geoms, speed=args.speed, duration=args.duration, keyframe=keyframe)
     if args.picture is not None:
         found.draw().savefig(args.picture, dpi=150)

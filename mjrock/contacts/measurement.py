@@ -21,7 +21,7 @@ from .effective_mass import PointLaw, with_tangents
 from .files import aligned
 from .geoms import GeomPair, compiled_model
 from .inspect import InspectedContact, inspected
-from .meeting import Keyframe, PairMeeting, Pose, meeting_of_geoms, posed_alike
+from .meeting import Keyframe, PairMeeting, Pose, meeting_of_geoms, state_alike
 from .row_of_model import ModelRow
 
 PHASES = 8
@@ -29,17 +29,13 @@ PHASES = 8
 PUSHED = 0.5
 """Force that pushes, as a share of what friction can hold at rest [-]."""
 MOST_MOVES, ARRIVED = 20, 1e-3
-"""Moves of the joints until the geoms are where they should be, within this share of the first distance [-]."""
+"""Most moves of the joints until the geoms have their distance, and its error over the first distance by then [-]."""
 LONGEST_BLOW = 40.0
-"""Longest blow that is waited for, in periods of the contact over 2 pi [-]; what is overdamped takes longer."""
+"""Longest blow that is followed, in periods of the contact over 2 pi [-], times xi where that is above 1."""
 
 
 class MeasuredValue(NamedTuple):
-    """A number that was measured, and what the contact promises.
-
-    Args:
-        found, promised: both, NaN where there is none.
-    """
+    """A number that was measured, `found`, and the `promised` one of the contact; NaN where there is none."""
 
     found: float
     promised: float
@@ -47,7 +43,7 @@ class MeasuredValue(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """What a contact of a model does.
+    """Measurements of a contact of a model.
 
     Args:
         contact: the contact as `inspect_contacts` gives it.
@@ -74,7 +70,7 @@ class Measurement:
     __repr__ = short_repr
 
     def __str__(self) -> str:
-        """A table: what was found, and what the contact promises."""
+        """A table of measured and promised values."""
         rows = [
             (f"restitution at {self.speed:g} m/s [-]", self.restitution),
             ("depth at rest [m]", self.depth),
@@ -86,15 +82,15 @@ class Measurement:
         return "\n".join(line.rstrip() for line in aligned([[title, "found", "promised"], *cells], "<>"))
 
     def draw(self) -> Any:
-        """A figure of Matplotlib, which has to be installed: a blow, and the rest, with what is promised dashed."""
+        """A figure of Matplotlib, which has to be installed: a blow, and the rest, promised values dashed."""
         from matplotlib import pyplot
 
         figure, (left, right) = pyplot.subplots(1, 2, figsize=(8, 3), layout="constrained")
         end = self.blow[-1]
         left.plot(*(1e3 * self.blow.T))
         if not math.isnan(self.restitution.promised):
-            way = np.array((0.0, 0.25 * end[0]))
-            left.plot(1e3 * (way + end[0]), 1e3 * (end[1] + self.restitution.promised * self.speed * way), "--")
+            later = np.array((0.0, 0.25 * end[0]))
+            left.plot(1e3 * (later + end[0]), 1e3 * (end[1] + self.restitution.promised * self.speed * later), "--")
         left.set(title=f"blow at {self.speed:g} m/s", xlabel="time [ms]", ylabel="distance [mm]")
         right.plot(self.rest[:, 0], 1e3 * self.rest[:, 1])
         right.axhline(-1e3 * self.depth.promised, linestyle="--", color="C1", label="promised")
@@ -131,10 +127,10 @@ def measure(
         TypeError, ValueError: for a value outside its range, and geoms that the joints cannot bring together.
     """
     whole = copy.copy(compiled_model(model))
-    return Bench(Pose(whole, keyframe, qpos), GeomPair.named(whole, geom1, geom2)).measured(speed, duration)
+    return ContactTest(Pose(whole, keyframe, qpos), GeomPair.named(whole, geom1, geom2)).measured(speed, duration)
 
 
-class Points(NamedTuple):
+class PressedPoints(NamedTuple):
     """The contact points of a pair in a state.
 
     Args:
@@ -149,7 +145,7 @@ class Points(NamedTuple):
     slip: float
 
 
-class Bench:
+class ContactTest:
     """A pair of geoms in a copy of a model, in which it is moved together and released.
 
     Args:
@@ -170,8 +166,10 @@ class Bench:
         depth = contact.load / contact.k_loaded if contact.k_loaded > 0 else math.nan
         rest, pressed, pushed = self.rest(0.0 if math.isnan(depth) else depth, duration)
         found_depth = -float(pressed.distances.mean()) if len(pressed.distances) else math.nan
-        each = pushed.friction / max(len(pushed.forces), 1)
-        holds = pushed.friction > 0
+        creep = MeasuredValue(math.nan, math.nan)
+        if pushed.friction > 0:
+            of_point = pushed.friction / max(len(pushed.forces), 1)
+            creep = MeasuredValue(pushed.slip, self.row.creep(of_point, found_depth))
         return Measurement(
             contact,
             speed,
@@ -179,15 +177,13 @@ class Bench:
             depth=MeasuredValue(found_depth, depth),
             force=MeasuredValue(float(pressed.forces.sum()), load),
             friction=pushed.friction,
-            creep=MeasuredValue(pushed.slip, self.row.creep(each, found_depth))
-            if holds
-            else MeasuredValue(math.nan, math.nan),
+            creep=creep,
             blow=blows[0][1],
             rest=rest,
         )
 
     def at(self, distance: float) -> tuple[Pose, mujoco.MjData]:
-        """The pose in which the geoms are nearly so far from each other [m], and the state in which they are.
+        """The pose in which the geoms are nearly at a distance of each other [m], and the state in which they are.
 
         Raises:
             ValueError: if the joints do not bring them there.
@@ -198,7 +194,7 @@ class Bench:
             place = np.array(pose.data.qpos)
             mujoco.mj_integratePos(self.model, place, self.meeting(pose).effective.motion, missing)
             if abs(missing) <= ARRIVED * first:
-                state = posed_alike(self.model, pose.data)
+                state = state_alike(self.model, pose.data)
                 state.qpos[:] = place
                 return pose, state
             pose = self.pose.at_positions(place)
@@ -245,7 +241,7 @@ class Bench:
             touched |= len(distances) > 0
         return 0.0, np.array(path)
 
-    def rest(self, depth: float, duration: float) -> tuple[Array, Points, Points]:
+    def rest(self, depth: float, duration: float) -> tuple[Array, PressedPoints, PressedPoints]:
         """Times [s] and distances [m] at rest and while pushed, and the contact points at the end of each, on average
         over the last quarter."""
         _, state = self.at(-depth)
@@ -275,7 +271,7 @@ class Bench:
         tangents = with_tangents(self.pose.landing(self.pair).away)[1:]
         return tangents[int(np.abs(tangents[1, 2]) < np.abs(tangents[0, 2]))]
 
-    def points(self, state: mujoco.MjData) -> Points:
+    def points(self, state: mujoco.MjData) -> PressedPoints:
         """The contact points of the pair at the start of a step that was made."""
         chosen = [i for i in range(state.ncon) if {*state.contact.geom[i].tolist()} == {*self.pair.geoms}]
         forces, slip, held = np.zeros((len(chosen), 6)), np.zeros((len(chosen), 2)), np.zeros(3)
@@ -288,7 +284,7 @@ class Bench:
                 mujoco.mj_jac(self.model, state, side, None, state.contact.pos[i], body)
                 slip[row] += sign * (frame[1:] @ (side @ state.qvel))
         size = np.linalg.norm(slip, axis=1)
-        return Points(
+        return PressedPoints(
             np.array(state.contact.dist[chosen]) if chosen else np.zeros(0),
             forces[:, 0],
             float(np.linalg.norm(held)),
@@ -296,12 +292,12 @@ class Bench:
         )
 
 
-def _mean(seen: Sequence[Points]) -> Points:
+def _mean(seen: Sequence[PressedPoints]) -> PressedPoints:
     """The mean of points of several steps; those with another number of points than the last are left out."""
     if not seen:
-        return Points(np.zeros(0), np.zeros(0), 0.0, 0.0)
+        return PressedPoints(np.zeros(0), np.zeros(0), 0.0, 0.0)
     alike = [points for points in seen if len(points.forces) == len(seen[-1].forces)]
-    return Points(
+    return PressedPoints(
         np.mean([points.distances for points in alike], axis=0),
         np.mean([points.forces for points in alike], axis=0),
         float(np.mean([points.friction for points in alike])),

@@ -39,18 +39,18 @@ NEARLY_LEVEL = 0.05
 """Slope within which geoms of one body are taken to land together [-]: a foot of several geoms that is nearly level."""
 SLOPING = 0.3
 """Slope within which they land one after the other, as those of a foot that is not level do [-]."""
-IDLE = 1e-3
-"""Force at rest as a share of the weight of the lighter body up to which a contact carries nothing [-]."""
+LEAST_LOAD = 1e-3
+"""Force at rest up to which a contact carries nothing, over the weight of the lighter body [-]."""
 TOUCHING_AT_REST = 1e-4
 """Distance within which geoms of a pose at rest touch, and joints are at their limits [m or rad]."""
 RIGID_AT_REST = ("eq_{}", "jnt_{}", "dof_{}", "tendon_{}_lim", "tendon_{}_fri")
 """Fields of a model with the parameters of constraints that are no contacts: equality, limits, and dry friction."""
 MOST_KEYFRAMES = 20
-"""Most keyframes in which a contact is looked at."""
+"""Most keyframes whose masses are compared."""
 
 
-class Trial:
-    """A copy of a model in a pose, see `state_of`, in which geoms are tried against each other."""
+class LandingTrial:
+    """A copy of a model in a pose, see `state_of`, in which geoms are moved together until they meet."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self.model = copy.copy(model)
@@ -58,7 +58,7 @@ class Trial:
         option.disableflags |= int(disabled.mjDSBL_MIDPHASE | disabled.mjDSBL_FILTERPARENT)
         option.disableflags &= ~int(disabled.mjDSBL_CONTACT | disabled.mjDSBL_CONSTRAINT)
         option.enableflags &= ~enable_bits("SPECULATIVE")
-        self.data = posed_alike(self.model, data)
+        self.data = state_alike(self.model, data)
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         for name in ("geom_contype", "geom_conaffinity", "body_contype", "body_conaffinity"):
@@ -121,7 +121,7 @@ class Trial:
         self.model.body_contype[bodies] = self.model.body_conaffinity[bodies] = value
 
 
-def posed_alike(model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
+def state_alike(model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
     """Data of a copy of a model in the pose of others, with their controls."""
     made = mujoco.MjData(model)
     made.qpos[:], made.mocap_pos[:], made.mocap_quat[:] = data.qpos, data.mocap_pos, data.mocap_quat
@@ -236,7 +236,7 @@ def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset
     for name in ("body_invweight0", "dof_invweight0", "tendon_invweight0"):
         getattr(held, name)[:] *= 1e-6  # of the regularisation
     held.dof_armature[moved_or_sprung(model, data)] += 1e6 * float(held.body_mass.sum())
-    state = posed_alike(held, data)
+    state = state_alike(held, data)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         mujoco.mj_forward(held, state)
@@ -267,7 +267,7 @@ class Pose:
         self.label = "qpos0" if not self.given else "qpos" if keyframe is None else f"keyframe {keyframe!r}"
         self.normal: Array | None = None
         self._landings: dict[tuple[int, ...], Landing] = {}
-        self._groups: dict[tuple[int, ...], Group] = {}
+        self._groups: dict[tuple[int, ...], BodyPair] = {}
 
     def at_positions(self, qpos: Array) -> Pose:
         """The same pose with other positions of the joints: controls and activations stay."""
@@ -310,11 +310,11 @@ class Pose:
         other.normal, other._groups = given / size, {}
         return other
 
-    def group(self, pair: GeomPair) -> Group:
+    def group(self, pair: GeomPair) -> BodyPair:
         """The geoms of the two bodies of a pair."""
         bodies = tuple(int(self.model.body_weldid[body]) for body in pair.bodies)
         if bodies not in self._groups:
-            self._groups[bodies] = Group(pair, self)
+            self._groups[bodies] = BodyPair(pair, self)
         return self._groups[bodies]
 
     @cached_property
@@ -333,13 +333,13 @@ class Pose:
         forces = self.resting.get(frozenset(pair.geoms))
         if forces is None:
             return pair.load / points
-        carried = sum(forces) if sum(forces) > IDLE * pair.load else 0.0
+        carried = sum(forces) if sum(forces) > LEAST_LOAD * pair.load else 0.0
         return max(NO_LOAD, carried) / (contacts or len(forces))
 
     @cached_property
-    def ground(self) -> Trial:
-        """A copy of the model in which geoms are tried against each other."""
-        return Trial(self.model, self.data)
+    def ground(self) -> LandingTrial:
+        """A copy of the model in which geoms are moved together."""
+        return LandingTrial(self.model, self.data)
 
     @cached_property
     def constraints(self) -> PoseConstraints:
@@ -356,8 +356,8 @@ class Pose:
         """The poses of the model's keyframes."""
         return tuple(Pose(self.model, i) for i in range(min(self.model.nkey, MOST_KEYFRAMES)))
 
-    def leaves(self, pair: GeomPair) -> bool:
-        """Whether the joints of both geoms are where they are in `qpos0`, although another pose may have been given."""
+    def keeps_qpos0(self, pair: GeomPair) -> bool:
+        """Whether the joints that move the two geoms are where they are in `qpos0`."""
         moved = np.flatnonzero(np.array(self.data.qpos) != self.model.qpos0)
         joints = np.searchsorted(self.model.jnt_qposadr, moved, side="right") - 1
         bodies = self.model.jnt_bodyid[joints]
@@ -414,7 +414,7 @@ def meeting_of_geoms(
         contacts: contact points that share the mass. None takes those of a trial landing, with those of `neighbours`.
         at: contact point in the world's frame [m], shape (3,). None is the middle of the points of a trial landing, or
             the centres of mass if the landing has other points than `contacts`.
-        alone: whether the points of these two geoms are the only ones, as they are where `contacts` or `at` is given.
+        alone: whether other geoms of the two bodies are left out, as they are where `contacts` or `at` is given.
         law: of each contact point.
     """
     if at is not None:
@@ -436,7 +436,7 @@ def meeting_of_geoms(
     return PairMeeting(count, effective, others)
 
 
-class Group:
+class BodyPair:
     """All geoms of two bodies of which MuJoCo makes contacts, in a pose, and where they land, found when needed.
 
     Attributes:

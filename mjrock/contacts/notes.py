@@ -1,7 +1,7 @@
 """Reasons for which a contact differs from the requested values: options of the model, the step, what was not written.
 
-Each function gives sentences. Those on one contact stand beside `PairContact`: `spoilers` of what `apply` leaves as it
-is, `missing` of what it writes.
+Each function gives sentences. Those on a `PairContact` stand in its module: `remaining_caveats`, which `apply` leaves,
+and `missing`, which it mends.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from .rebound import rebound_at, rebound_restitution
 from .versions import BOXES_HALF_AS_DEEP, DISABLE, ENABLE, disable_bits, give_several_points, has_several_points
 
 SCATTER_WARNED_OF = 0.02
-"""Scatter of the restitution from step to step that is worth a warning [-]."""
+"""Scatter of the restitution from step to step above which there is a warning [-]."""
 LONG_STEP = 0.3
 """omega h from which a step is called long [-]. The mean of e is then off by up to 0.025, most at e = 0.1."""
 UNSOUND = 1.0
 """omega h from which a step does not resolve the contact [-]. `contact_for` then makes it lose what the step takes."""
-STIFF_BESIDE = 0.05
-"""Stiffness beside that of the contact, as a share of it, from which it is named [-]."""
-SHIFTS = 0.02
-"""Change of the restitution by dampers and dry friction from which they are named [-]."""
-FOREIGN = 1.2
-"""Ratio of the masses of two poses from which a warning names the pose that the contact is made for [-]."""
+NOTABLE_STIFFNESS = 0.05
+"""Stiffness of springs of the model over that of the contact above which there is a warning [-]."""
+NOTABLE_LOSS = 0.02
+"""Change of the restitution by dampers and dry friction above which there is a warning [-]."""
+NOTABLE_MASS_RATIO = 1.2
+"""Ratio of the masses of a contact in two poses above which there is a warning [-]."""
 IMMOVABLE = 10.0
 """Effective mass over that of all that moves from which a body is reported as hardly able to move [-]."""
-TURN = 0.01
+SMALL_TURN = 0.01
 """Turn about the normal with which the points of two faces are counted again [degrees]."""
 CONSTRAINT = mujoco.mjtObj.mjOBJ_EQUALITY
-JUDGED = {
+FLAG_EFFECTS = {
     "ENBL_OVERRIDE": "the override flag is set, so that o_solref and o_solimp take the place of the solref and "
     "solimp of every contact",
     "ENBL_DIAGEXACT": "the diagexact flag is set, with which the stiffness of a contact changes with the pose",
@@ -72,10 +72,10 @@ JUDGED = {
 """What each flag of MuJoCo does to a contact in N/m, once it is set; empty where it does nothing."""
 
 SAFE = "; with refsafe it also replaces contacts that the step does not resolve by some without a rebound"
-MOST_TURNS, LINE_SEARCHES = 100, 50
+MOST_ITERATIONS, LINE_SEARCHES = 100, 50
 """Iterations and line searches with which a solver is taken to converge, MuJoCo's defaults."""
 
-VARIES = re.compile(
+VARYING_PARTS = re.compile(
     r"((joint|tendon|actuator) \S+?(, | (?=adds? |is |are |and \d)))+(and \d+ more )?(adds?|is at its|are at their)"
     r" (limits?)?|equality constraints? .*? yields?|(?<=lands together with ).*(?=, and shares)"
     r"|keyframe=?\s?'[^']*'|[-+]?\d[\d.]*(e[-+]?\d+)?"
@@ -87,7 +87,7 @@ class ContactWarning(UserWarning):
     """A reason for which a contact in N/m differs from the request, or an effect of it on the rest of the model."""
 
 
-def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
+def model_caveats(model: mujoco.MjModel) -> Iterator[str]:
     """Effects of the options of a model on every contact, one sentence each."""
     option = model.opt
     if option.integrator == getattr(mujoco.mjtIntegrator, "mjINT_DISCRETE", None):
@@ -97,7 +97,9 @@ def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
         )
     for bits, kind in ((int(option.enableflags), ENABLE), (int(option.disableflags), DISABLE)):
         known = {
-            int(flag): JUDGED.get(name.removeprefix("mj")) for name, flag in kind.__members__.items() if "_" in name
+            int(flag): FLAG_EFFECTS.get(name.removeprefix("mj"))
+            for name, flag in kind.__members__.items()
+            if "_" in name
         }
         for bit in (1 << i for i in range(bits.bit_length()) if bits >> i & 1):
             text = known.get(bit)
@@ -108,11 +110,11 @@ def model_spoilers(model: mujoco.MjModel) -> Iterator[str]:
 
 
 class SolverNeed(NamedTuple):
-    """What contacts need of MuJoCo's solver.
+    """Iterations of MuJoCo's solver that contacts need.
 
     Args:
         iterations, ls_iterations: the options of these names that are enough; those of the model if it has enough.
-        converges: whether the solver converges in `MOST_TURNS` iterations.
+        converges: whether the solver converges in `MOST_ITERATIONS` iterations.
         impratio: with which it converges where it does not with that of the contacts; infinity if none is found. A load
             that friction holds then creeps faster, as much as impratio is smaller.
         tried: whether the contacts could be tried; the numbers are those of the model where not.
@@ -126,11 +128,11 @@ class SolverNeed(NamedTuple):
 
 
 ENOUGH = SolverNeed()
-"""What any solver has."""
+"""A need that every solver meets."""
 
 
 def few_iterations(option: mujoco.MjOption, needs: SolverNeed, impratio: float = 0.0) -> Iterator[str]:
-    """What the solver of a model lacks, as a sentence. The contacts will raise impratio to what is given."""
+    """What the solver of a model lacks, as a sentence. The contacts raise impratio to a value [-]."""
     if not needs.tried:
         yield (
             "whether the solver has enough iterations for it is not tried: no contact in question carries a force in "
@@ -138,6 +140,7 @@ def few_iterations(option: mujoco.MjOption, needs: SolverNeed, impratio: float =
         )
     solver = mujoco.mjtSolver(option.solver).name.removeprefix("mjSOL_")
     few = option.iterations < needs.iterations or option.ls_iterations < needs.ls_iterations
+    most = max(int(option.iterations), MOST_ITERATIONS)
     if needs.converges and few:
         yield (
             f"the solver needs iterations = {needs.iterations} and ls_iterations = {needs.ls_iterations} for it, and "
@@ -145,19 +148,19 @@ def few_iterations(option: mujoco.MjOption, needs: SolverNeed, impratio: float =
         )
     elif not needs.converges and needs.impratio == math.inf:
         yield (
-            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST_TURNS)} "
-            "iterations, and with no smaller impratio; take Newton, or a smaller ratio of masses"
+            f"the solver {solver} does not converge with this contact in {most} iterations, and with no smaller "
+            "impratio; take Newton, or a smaller ratio of masses"
         )
     elif not needs.converges and (few or max(option.impratio, impratio) > needs.impratio):
         yield (
-            f"the solver {solver} does not converge with this contact in {max(int(option.iterations), MOST_TURNS)} "
-            f"iterations; with impratio = {needs.impratio:g} it does in {needs.iterations}, and friction creeps more: "
-            "apply(model, iterations=True) writes both and caveats then says how much; or take Newton"
+            f"the solver {solver} does not converge with this contact in {most} iterations; with impratio = "
+            f"{needs.impratio:g} it does in {needs.iterations}, and friction creeps more: apply(model, "
+            "iterations=True) writes both and caveats then says how much; or take Newton"
         )
 
 
-def uneven(points: int) -> str:
-    """The effect of uneven ground, as a sentence."""
+def uneven_ground(points: int) -> str:
+    """The effect of uneven ground on a contact that is made for a number of points, as a sentence."""
     return (
         "one of the geoms is uneven, and the number of contact points changes from place to place; the mass is that "
         f"of {points}"
@@ -214,22 +217,22 @@ def unknown_landing(pair: GeomPair, pose: Pose) -> Iterator[str]:
         )
 
 
-def turned(pair: GeomPair, pose: Pose, k: float) -> Iterator[str]:
+def turn_caveats(pair: GeomPair, pose: Pose, k: float) -> Iterator[str]:
     """A sentence where a small turn gives the faces of two geoms another number of points, with both stiffnesses of
     the joint. Each point has the stiffness k [N/m]."""
     here = pose.landing(pair)
     if not pair.has_two_faces or not pair.can_turn(pose.data, here.away):
         return
-    before, after = len(here.first), len(pose.ground.points(pair, here.away, here.distance, TURN))
+    before, after = len(here.first), len(pose.ground.points(pair, here.away, here.distance, SMALL_TURN))
     if after > before:
         yield (
-            f"a turn of {TURN:g} degrees about the normal gives the two faces {after} points for {before}: the "
+            f"a turn of {SMALL_TURN:g} degrees about the normal gives the two faces {after} points for {before}: the "
             f"joint then has {k * after:.3g} N/m for {k * before:.3g} N/m, and as much more "
             "damping; faces of which one lies within the other, and meshes in place of boxes, keep their points"
         )
 
 
-def shape_spoilers(pair: GeomPair, pose: Pose) -> Iterator[str]:
+def shape_caveats(pair: GeomPair, pose: Pose) -> Iterator[str]:
     """What MuJoCo's contact detection does to the shapes of two geoms, one sentence each."""
     model, here = pair.model, pose.landing(pair)
     kinds = [mujoco.mjtGeom(model.geom_type[geom]) for geom in pair.geoms]
@@ -250,18 +253,19 @@ def shape_spoilers(pair: GeomPair, pose: Pose) -> Iterator[str]:
         option = pose.ground.model.opt
         flags = option.disableflags, option.enableflags
         give_several_points(option)
-        found = len(pose.ground.points(pair, here.away, here.distance))
+        several = len(pose.ground.points(pair, here.away, here.distance))
         option.disableflags, option.enableflags = flags
-        if found > 1:
+        if several > 1:
             yield (
-                f"the two faces meet in one point, where the multiccd flag gives them {found}: a face on one point has "
-                "no stiffness against turning; enable multiccd"
+                f"the two faces meet in one point, where the multiccd flag gives them {several}: a face on one point "
+                "has no stiffness against turning; enable multiccd"
             )
 
 
-def holding(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float = 1.0) -> Iterator[str]:
-    """What holds the bodies of a contact besides, one sentence each. The whole contact has the stiffness k [N/m], the
-    damping ratio xi [-]; dry friction is judged at the speed of approach [m/s]."""
+def restraint_caveats(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float = 1.0) -> Iterator[str]:
+    """Constraints, springs, dampers and dry friction of the model that hold the bodies of a contact too, one sentence
+    each. The whole contact has the stiffness k [N/m] and the damping ratio xi [-]. Dry friction is judged at a speed of
+    approach [m/s]."""
     model, data = pose.model, pose.data
     if effective.slides:
         yield (
@@ -281,11 +285,11 @@ def holding(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: fl
         rows = {_name(model, kind, data.efc_id[row]) for kind, row in zip(kinds, effective.limits, strict=True)}
         be = "is at its limit" if len(rows) == 1 else "are at their limits"
         yield f"{named(sorted(rows))} {be} in this pose, which holds the contact too; give mass"
-    yield from _beside(pose, effective, k, xi, speed)
+    yield from _spring_caveats(pose, effective, k, xi, speed)
 
 
-def _beside(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float) -> Iterator[str]:
-    """What springs, dampers and dry friction do, where they do much together.
+def _spring_caveats(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: float) -> Iterator[str]:
+    """Effects of springs, dampers and dry friction, where they are notable, one sentence each.
 
     A dry friction F that is small beside the force m omega v of the contact lowers e by F / (m omega v) times
     2 sqrt(e) - 2 xi e, which is its work on the way in and out. MuJoCo's row of dry friction yields, and in a short
@@ -295,7 +299,7 @@ def _beside(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: fl
     stiffness, damping = springs.along(effective.motion, speed)
     friction, mass = springs.friction(effective.motion), effective.mass
     added = float(stiffness.sum())
-    if abs(added) > STIFF_BESIDE * k:
+    if abs(added) > NOTABLE_STIFFNESS * k:
         yield (
             f"{_names(pose, stiffness)} {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
             "approach, which changes its restitution"
@@ -306,7 +310,7 @@ def _beside(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: fl
     rubbed = (
         min(e, max(pull * (2 * math.sqrt(e) - 2 * xi * e), e - rebound_at(1.0, xi, 1.0, pull))) if pull > 0 else 0.0
     )
-    least = SHIFTS if damped + rubbed <= SHIFTS else 0.25 * SHIFTS
+    least = NOTABLE_LOSS if damped + rubbed <= NOTABLE_LOSS else 0.25 * NOTABLE_LOSS
     if damped > least:
         yield (
             f"{_names(pose, damping)} a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
@@ -320,11 +324,11 @@ def _beside(pose: Pose, effective: EffectiveMass, k: float, xi: float, speed: fl
 
 
 def _names(pose: Pose, shares: Array) -> str:
-    """Those that add nearly all of it, the largest first, and the verb."""
+    """The owners of the largest shares of a sum, the largest first, and the verb."""
     shares = np.abs(shares)
     order = np.argsort(-shares, kind="stable")
-    most = [_name(pose.model, *pose.springs.owners[i]) for i in order[shares[order] >= 0.1 * shares[order[0]]]]
-    return f"{named(most)} add{'s' * (len(most) == 1)}"
+    largest = [_name(pose.model, *pose.springs.owners[i]) for i in order[shares[order] >= 0.1 * shares[order[0]]]]
+    return f"{named(largest)} add{'s' * (len(largest) == 1)}"
 
 
 def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
@@ -345,7 +349,7 @@ def yielding_joints(
 
     A blow lasts about pi / omega, and its impulse grows to (1 + e) m v: the joints move by half of that on average.
     """
-    if met.effective.yielding:  # `holding` names them
+    if met.effective.yielding:  # `restraint_caveats` names them
         return
     model, here = pair.model, pose.landing(pair)
     assert law.k is not None
@@ -362,7 +366,7 @@ def yielding_joints(
         effective_mass(pair, each.constraints, here.away, (points[0], points[1]), law.together(met.points)).mass
         for each, points in ((pose, before), (later, after))
     )
-    if max(last / first, first / last) > FOREIGN:
+    if max(last / first, first / last) > NOTABLE_MASS_RATIO:
         yield (
             f"joints give way within a blow of {lasts:.2g} s at {speed:g} m/s, in which a contact of {first:.3g} kg "
             f"comes to stop {last:.3g} kg, and the restitution is another; a stiffer contact is over sooner"
@@ -373,11 +377,11 @@ def other_keyframes(
     pair: GeomPair, pose: Pose, here: PairMeeting, contacts: int | None, friction: float
 ) -> Iterator[str]:
     """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
-    if pose.given and (pose.exact or not pose.leaves(pair)):
+    if pose.given and (pose.exact or not pose.keeps_qpos0(pair)):
         return
-    names, worst = keyframe_names(pair.model), (FOREIGN, "", 0.0)
+    names, worst = keyframe_names(pair.model), (NOTABLE_MASS_RATIO, "", 0.0)
     for name, other in zip(names, pose.others, strict=False):
-        if pose.given and other.leaves(pair):
+        if pose.given and other.keeps_qpos0(pair):
             continue
         share = meeting_of_geoms(pair, other, contacts=contacts, law=PointLaw(friction)).share
         if 0 < share < IMMOVABLE * pair.moving:  # beyond that the motion is one that cannot be

@@ -7,8 +7,8 @@ become the spring K and dashpot B of a row. With the impedance d at zero penetra
 
 In the direct format K = stiffness / dw^2 and B = damping / dw, otherwise K = 1 / (dw timeconst dampratio)^2 and
 B = 2 / (dw timeconst), where dw is the impedance at the full width. With friction and the pyramidal cone all three
-change by the factor of `Mixed.pyramid`. An Euler step of length h uses up h c / 2 of the inertia m_i (see `contact`).
-What is left moves with the mass in a contact.
+change by the factor of `PairParameters.pyramid`. An Euler step of length h uses up h c / 2 of the inertia m_i (see
+`solref`). The rest moves with the mass in a contact.
 
 Under a load at rest the row is a spring of the stiffness K d^2 / ((1 - d) W), with d at the indentation."""
 
@@ -27,21 +27,23 @@ from .geoms import GeomPair
 from .solref import IMPEDANCE_RANGE
 from .versions import GAP_IS_BEYOND, MARGINS_ADD_UP, field
 
-HOLD = 1e7
-"""Rate with which friction holds [1/s]: a load F creeps at F / (HOLD m), a body on a slope at less than 1e-6 m/s."""
+HOLDING_RATE = 1e7
+"""Rate with which friction holds [1/s]: a load F creeps at F / (HOLDING_RATE m), a body on a slope at less than
+1e-6 m/s."""
 
 
 @dataclass(frozen=True)
-class Mixed:
-    """What a contact takes from its explicit pair or, without one, from its two geoms.
+class PairParameters:
+    """The parameters of a contact, those of its explicit pair or, without one, of its two geoms.
 
     Args:
         solref, solimp: MuJoCo's parameters of the normal row.
         solreffriction: the same of the friction rows; zeros stand for solref.
         friction: two sliding, one torsional, two rolling coefficients [-].
         condim: 1 without friction, 3 with sliding, 4 with torsional, 6 with rolling friction.
-        margin, gap, adhesion: distance at which the contact starts to act [m], that from there on up to which it pulls
-            [m], and its tensile force [N].
+        margin: distance at which the contact starts to act [m].
+        gap: distance from there on up to which it pulls [m].
+        adhesion: its tensile force [N].
     """
 
     solref: tuple[float, ...]
@@ -54,7 +56,7 @@ class Mixed:
     adhesion: float
 
     @classmethod
-    def from_pair(cls, pair: GeomPair) -> Mixed:
+    def from_pair(cls, pair: GeomPair) -> PairParameters:
         """The parameters of a pair of geoms, by the rules of MuJoCo's manual (Modeling, Contact parameters).
 
         The geom of higher priority decides. At equal priority solref and solimp are averaged with the weights solmix,
@@ -75,7 +77,7 @@ class Mixed:
         return cls.of_sides(model, [("geom", geom) for geom in pair.geoms])
 
     @classmethod
-    def of_sides(cls, model: mujoco.MjModel, sides: Sequence[tuple[str, int]]) -> Mixed:
+    def of_sides(cls, model: mujoco.MjModel, sides: Sequence[tuple[str, int]]) -> PairParameters:
         """The parameters of two sides without an explicit pair, each a geom or a flex with its number."""
 
         def own(name: str) -> Array:
@@ -131,7 +133,7 @@ class Mixed:
         return (self.condim - 1) * impratio / (mu**2 * (1 + mu**2))
 
 
-WRITTEN = tuple(name for name in Mixed.__annotations__ if hasattr(mujoco.MjsPair, name))
+WRITTEN = tuple(name for name in PairParameters.__annotations__ if hasattr(mujoco.MjsPair, name))
 """Attributes of an explicit pair that MuJoCo has."""
 
 
@@ -140,8 +142,8 @@ def _reach(margin: float, gap: float) -> tuple[float, float]:
     return (float(margin), float(gap)) if GAP_IS_BEYOND else (float(margin - gap), 0.0)
 
 
-class Grip(NamedTuple):
-    """What a `PairContact` has for friction."""
+class FrictionParameters(NamedTuple):
+    """Friction of a `PairContact`, with the parameters of its rows, see there."""
 
     friction: tuple[float, float, float, float, float]
     condim: int
@@ -149,16 +151,16 @@ class Grip(NamedTuple):
     impratio: float = 1.0
 
     @classmethod
-    def from_pair(cls, pair: GeomPair, friction: object = None) -> Grip:
+    def from_pair(cls, pair: GeomPair, friction: object = None) -> FrictionParameters:
         """Friction of the model, in which one coefficient replaces the two of sliding, and five replace all.
 
         A contact without friction gets condim 3, and one whose sliding friction is zero gets condim 1.
         """
-        mixed = Mixed.from_pair(pair)
+        mixed = PairParameters.from_pair(pair)
         if friction is None:
             return cls(mixed.friction, mixed.condim)
-        alone = [friction, friction, *mixed.friction[2:]]
-        numbers = listed("friction", friction) if is_iterable(friction) else alone
+        sliding_alone = [friction, friction, *mixed.friction[2:]]
+        numbers = listed("friction", friction) if is_iterable(friction) else sliding_alone
         if len(numbers) != 5:
             raise ValueError(
                 f"friction = {shown(friction)} has {len(numbers)} numbers; one of sliding is needed, or five: two of "
@@ -173,7 +175,7 @@ class Grip(NamedTuple):
         """Coefficient of sliding friction [-]."""
         return self.friction[0] if self.condim > 1 else 0.0
 
-    def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> Grip:
+    def holding(self, rate: float, impedance: float, mass: float, inertia: float) -> FrictionParameters:
         """The same with the parameters that stop slip.
 
         Args:
@@ -183,13 +185,13 @@ class Grip(NamedTuple):
         """
         if self.condim == 1:
             return self
-        impratio = max(1.0, HOLD / rate * mass / inertia)
+        impratio = max(1.0, HOLDING_RATE / rate * mass / inertia)
         return self._replace(solreffriction=(-1e-30, -impedance * rate), impratio=impratio)
 
 
-def unused(given: object, grip: Grip) -> Iterator[str]:
-    """Torsional and rolling friction that is given, and that the condim of the model leaves out."""
-    if is_iterable(given) and any(grip.friction[max(2, grip.condim - 1) :]):
+def unused(friction: object, grip: FrictionParameters) -> Iterator[str]:
+    """A sentence on torsional and rolling friction of the request that the condim of the model leaves out."""
+    if is_iterable(friction) and any(grip.friction[max(2, grip.condim - 1) :]):
         yield (
             f"friction = {tuple(f'{mu:g}' for mu in grip.friction)} has torsional or rolling friction that condim "
             f"{grip.condim} leaves out; give the geoms condim 4 for torsional, 6 for both"
@@ -197,10 +199,10 @@ def unused(given: object, grip: Grip) -> Iterator[str]:
 
 
 class ModelRow:
-    """The row of a contact of a model, of the inverse weight W of its sides [1/kg] and what it takes from them.
+    """The row of a contact of a model, from the inverse weight W of its sides [1/kg] and its parameters.
 
     Attributes:
-        mixed: what the contact takes from its pair or its geoms.
+        mixed: the parameters.
         k, c: spring [N/m] and dashpot [N s/m] at zero penetration.
         inertia: inertia that the row adds, beyond what the Euler step takes [kg].
         impedance: d at zero penetration [-].
@@ -212,7 +214,7 @@ class ModelRow:
         elliptic: whether the model has the elliptic cone.
     """
 
-    def __init__(self, model: mujoco.MjModel, inverse_weight: float, mixed: Mixed) -> None:
+    def __init__(self, model: mujoco.MjModel, inverse_weight: float, mixed: PairParameters) -> None:
         option = model.opt
         if option.enableflags & int(mujoco.mjtEnableBit.mjENBL_OVERRIDE):
             solref, solimp = option.o_solref, option.o_solimp
@@ -240,7 +242,7 @@ class ModelRow:
     @classmethod
     def from_pair(cls, pair: GeomPair) -> ModelRow:
         """The row of two geoms."""
-        return cls(pair.model, pair.inverse_weight, Mixed.from_pair(pair))
+        return cls(pair.model, pair.inverse_weight, PairParameters.from_pair(pair))
 
     def loaded(self, load: float) -> float:
         """The load [N] over the indentation at which the row carries it [N/m]; 0 without a spring."""

@@ -22,8 +22,8 @@ from .checks import Array
 from .contact import PairContact, PairContacts
 from .effective_mass import with_tangents
 from .geoms import GeomPair
-from .meeting import TOUCHING_AT_REST, Landing, Pose, posed_alike
-from .notes import LINE_SEARCHES, MOST_TURNS, SolverNeed
+from .meeting import TOUCHING_AT_REST, Landing, Pose, state_alike
+from .notes import LINE_SEARCHES, MOST_ITERATIONS, SolverNeed
 
 STEPS = 40
 """Steps of a trial of the solver from each of its two starts."""
@@ -41,12 +41,12 @@ Landed = tuple[PairContact, Landing]
 
 
 def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
-    """What contacts need of the solver of their model, by a trial in a pose.
+    """The iterations that contacts need of the solver of their model, by a trial in a pose.
 
     Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
     """
     trial = SolverTrial(pose, landed)
-    own, cap, searches = trial.own, max(trial.own[0], MOST_TURNS), max(trial.own[1], LINE_SEARCHES)
+    own, cap, searches = trial.own, max(trial.own[0], MOST_ITERATIONS), max(trial.own[1], LINE_SEARCHES)
     try:
         found = trial.run(cap, searches)
     except mujoco.FatalError:  # the memory of the model is too small for the contacts
@@ -67,7 +67,7 @@ def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
 
 @dataclass
 class TrialResult:
-    """What a trial finds.
+    """The result of a trial.
 
     Args:
         most: the most iterations of a step.
@@ -135,38 +135,38 @@ class SolverTrial:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             for speed in (MOVING, -MOVING):  # what parts from its contact in one of them meets it in the other
-                data = posed_alike(self.model, self.pose.data)
+                data = state_alike(self.model, self.pose.data)
                 data.qvel[:] = speed * np.cos(np.arange(self.model.nv))
                 for _ in range(STEPS):
-                    self._place(data)
+                    self._find_contacts(data)
                     fewer = self._forces(data, *self.own)
-                    turns, right = self._right(data, cap, searches)
+                    turns, exact = self._exact(data, cap, searches)
                     if not np.abs(data.qacc).max(initial=0) < LARGEST_ACCELERATION:
                         break
                     result.most = max(result.most, turns)
-                    result.enough &= _alike(fewer, right)
-                    result.carried |= self._carry(data)
+                    result.enough &= _are_equal(fewer, exact)
+                    result.carried |= self._carries(data)
                     mujoco.mj_Euler(self.model, data)
         return result
 
-    def _right(self, data: mujoco.MjData, cap: int, searches: int) -> tuple[int, Array]:
+    def _exact(self, data: mujoco.MjData, cap: int, searches: int) -> tuple[int, Array]:
         """Iterations of the model's solver, of `cap` with `searches` line searches, and forces of Newton's method [N].
 
         A solver that ends at its last iteration may only miss its tolerance. Half of the iterations, and so on, count
         then where they find the forces of Newton's method.
         """
-        exact = int(mujoco.mjtSolver.mjSOL_NEWTON)
+        newton = int(mujoco.mjtSolver.mjSOL_NEWTON)
         self._forces(data, cap, searches)
         turns = int(data.solver_niter.max(initial=0))
-        right = self._forces(data, MOST_TURNS, LINE_SEARCHES, exact)
+        exact = self._forces(data, MOST_ITERATIONS, LINE_SEARCHES, newton)
         if turns == cap:
-            while turns > 1 and _alike(self._forces(data, turns // 2, searches), right):
+            while turns > 1 and _are_equal(self._forces(data, turns // 2, searches), exact):
                 turns //= 2
-            right = self._forces(data, MOST_TURNS, LINE_SEARCHES, exact)
-        return turns, right
+            exact = self._forces(data, MOST_ITERATIONS, LINE_SEARCHES, newton)
+        return turns, exact
 
-    def _place(self, data: mujoco.MjData) -> None:
-        """The position of a state, in which the contacts that are tried have their points in place of MuJoCo's."""
+    def _find_contacts(self, data: mujoco.MjData) -> None:
+        """Compute a state with the points of the contacts that are tried in place of those that MuJoCo finds."""
         model = self.model
         mujoco.mj_fwdPosition(model, data)
         for contact in data.contact if data.ncon else ():
@@ -188,7 +188,7 @@ class SolverTrial:
         data.qacc_warmstart[:], option.solver = start, own
         return np.array(data.efc_force)
 
-    def _carry(self, data: mujoco.MjData) -> bool:
+    def _carries(self, data: mujoco.MjData) -> bool:
         """Whether one of the points carries a force."""
         rows = data.contact.efc_address[data.ncon - len(self.pressed) :] if self.pressed else np.zeros(0, int)
         return bool(np.any(data.efc_force[rows[rows >= 0]] > 0))
@@ -226,7 +226,7 @@ def _points(pose: Pose, contact: PairContact, landing: Landing) -> Iterator[Pres
         yield PressedPoint(row, pair.bodies, (places[0], places[1]), apart + depth)
 
 
-def _alike(one: Array, other: Array) -> bool:
-    """Whether the forces of two solutions of one state are the same."""
+def _are_equal(one: Array, other: Array) -> bool:
+    """Whether the forces of two solutions of one state are equal to OTHER_FORCES."""
     largest = np.abs(other).max(initial=0)
     return bool(np.abs(one - other).max(initial=0) <= OTHER_FORCES * largest)

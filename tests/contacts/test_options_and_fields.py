@@ -11,7 +11,7 @@ import pytest
 from pairs import BALL, FLOOR, scene, since
 
 import mjrock as mr
-from mjrock.contacts.notes import JUDGED, SolverNeed, few_iterations, model_spoilers
+from mjrock.contacts.notes import FLAG_EFFECTS, SolverNeed, few_iterations, model_caveats
 
 BOXES = "".join(
     f'<body pos="0 0 {0.05 + 0.1 * i}"><freejoint/>'
@@ -89,12 +89,12 @@ def test_a_solver_without_friction_is_given_nothing():
 def test_every_flag_of_mujoco_is_judged():
     """It fails when MuJoCo adds a flag: say in `notes` what that does to a contact."""
     names = {name for kind in (mujoco.mjtEnableBit, mujoco.mjtDisableBit) for name in kind.__members__}
-    assert {name for name in names if "_" in name} <= {f"mj{name}" for name in JUDGED}
+    assert {name for name in names if "_" in name} <= {f"mj{name}" for name in FLAG_EFFECTS}
     model = mujoco.MjModel.from_xml_string(scene(FLOOR, BALL))
-    assert list(model_spoilers(model)) == []
+    assert list(model_caveats(model)) == []
     model.opt.enableflags |= 1 << 20
     model.opt.disableflags |= 1 << 25
-    assert [text[:22] for text in model_spoilers(model)] == ["mjtEnableBit 1048576 i", "mjtDisableBit 33554432"]
+    assert [text[:22] for text in model_caveats(model)] == ["mjtEnableBit 1048576 i", "mjtDisableBit 33554432"]
 
 
 @since(4, 0)

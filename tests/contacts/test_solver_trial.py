@@ -101,7 +101,7 @@ def test_nothing_else_is_pressed():
     """A margin as wide as a foot is high would press it into its own shin and into the other foot."""
     trial = trial_of(biped(0.5), "foot0.1", "floor")
     data = mujoco.MjData(trial.model)
-    trial._place(data)
+    trial._find_contacts(data)
     assert [sorted(each.geom) for each in data.contact if not each.exclude] == [sorted(trial.contacts.contacts[0].ids)]
     assert data.contact[0].dist == pytest.approx(-0.3 / trial.contacts.contacts[0].frequency)
 

@@ -10,7 +10,7 @@ import pytest
 from pairs import BALL, BOX, FLAT_BOX, FLOOR, ON_A_PLANE, scene
 
 import mjrock as mr
-from mjrock.contacts.contact import weight_spoilers
+from mjrock.contacts.contact import weight_caveats
 from mjrock.contacts.meeting import Pose
 from scripts.checks import requested_and_found as study
 
@@ -115,11 +115,11 @@ def test_a_small_restitution_under_gravity_is_warned_of():
     text = scene(FLOOR, BALL, gravity=9.81)
     with pytest.warns(UserWarning, match=r"gravity lowers so small a restitution: e = 0.2 becomes .* give speed"):
         contact = mr.contact_for(spec_of(text), "ball", "floor", k=1e6, restitution=0.2)
-    named = float(str(next(iter(weight_spoilers(contact)))).split("below ")[1].split()[0])
+    named = float(str(next(iter(weight_caveats(contact)))).split("below ")[1].split()[0])
     assert contact.restitution_at(named) == pytest.approx(0.1, abs=0.02)
-    assert not list(weight_spoilers(mr.contact_for(spec_of(text), "ball", "floor", k=1e6, restitution=0.3)))
-    assert not list(weight_spoilers(mr.contact_for(spec_of(text), "ball", "floor", k=1e6, restitution=0.01)))
-    assert not list(weight_spoilers(mr.contact_for(spec_of(ON_A_PLANE), "ball", "floor", k=1e6, restitution=0.2)))
+    assert not list(weight_caveats(mr.contact_for(spec_of(text), "ball", "floor", k=1e6, restitution=0.3)))
+    assert not list(weight_caveats(mr.contact_for(spec_of(text), "ball", "floor", k=1e6, restitution=0.01)))
+    assert not list(weight_caveats(mr.contact_for(spec_of(ON_A_PLANE), "ball", "floor", k=1e6, restitution=0.2)))
     two = scene(BALL, BALL.replace("ball", "other").replace("0 0 .1", "0 0 .4"), gravity=9.81)
     assert mr.contact_for(spec_of(two), "ball", "other", k=1e6, restitution=0.2).gravity == 0.0
 
@@ -135,7 +135,7 @@ def test_bodies_of_a_pile_fall_alike_exactly():
         contact = mr.contact_for(spec_of(scene(*balls, gravity=9.81)), above, below, k=1e6, restitution=0.1)
         assert "carries nothing at rest" in str(contact)  # all of them fall
         assert contact.gravity == 0.0
-        assert not list(weight_spoilers(contact))
+        assert not list(weight_caveats(contact))
 
 
 def test_mujocos_default_under_gravity():
