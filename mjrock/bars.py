@@ -1,4 +1,4 @@
-"""Bars that show how far something is: on a terminal as text, in a notebook as a widget, where it has widgets."""
+"""Progress bars: on a terminal as text, in a notebook as a widget, where it has widgets."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from tqdm import tqdm
 Value = TypeVar("Value")
 DELAY = 3.0
 """Time that nothing is shown [s]."""
-LOOK = 0.1
-"""Time between two looks at whether something is done [s]."""
+POLLED_EVERY = 0.1
+"""Time between two checks whether a function has ended [s]."""
 PLAIN = "{desc}: {n:.0f} {unit} [{elapsed}{postfix}]"
 OF_ALL = "{desc}: {percentage:3.0f}%|{bar}| {n:.0f} of {total:g} {unit} [{elapsed}<{remaining}{postfix}]"
 
 
 class Progress(NamedTuple):
-    """How far something is.
+    """The progress of a task.
 
     Args:
-        what: is in progress.
-        done: how much of it is done.
-        total: how much there is of it; None if that is unknown.
+        what: the task.
+        done: amount of it that is done.
+        total: amount of all of it; None if that is unknown.
     """
 
     what: str
@@ -71,12 +71,12 @@ def shown_bar(what: str, unit: str, total: float | None, **options: object) -> t
 
 
 class Bar:
-    """Progress of what may take longer than DELAY; before, it costs nothing. Use it in a `with` statement.
+    """Progress of a task that may take longer than DELAY; before, it costs nothing. Use it in a `with` statement.
 
     Args:
-        what: is in progress.
-        unit: what is counted.
-        total: how much there is of it; None if that is unknown.
+        what: the task.
+        unit: of its amount.
+        total: amount of all of it; None if that is unknown.
     """
 
     def __init__(self, what: str, unit: str, total: float | None = None) -> None:
@@ -133,6 +133,6 @@ def waited(function: Callable[[], Value], what: str) -> Value:
 
     threading.Thread(target=copy_context().run, args=(work,), daemon=True, name=what).start()
     with Bar(what, "s") as bar:
-        while not wait([future], timeout=LOOK).done:
+        while not wait([future], timeout=POLLED_EVERY).done:
             bar.to(time.time() - bar.begun)
     return future.result()

@@ -1,4 +1,4 @@
-"""What commands share: how their arguments are read, what they answer, and which files they may write."""
+"""Commands: how their arguments are read, what they answer, and which files they may write."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Status(IntEnum):
 
 
 class Answer(NamedTuple):
-    """What a command answers.
+    """The answer of a command.
 
     Args:
         text: for the standard output.

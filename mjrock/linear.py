@@ -1,4 +1,4 @@
-"""Linear algebra of structures: stability and frequencies of bodies on springs, some motions of them held.
+"""Linear algebra of structures: stability and frequencies of bodies on springs, some of whose motions are held.
 
 Matrices are sparse. Structures of few unknowns are solved in full, by null spaces and eigenvalues, which need no
 care. Larger ones are factorised as they are: a block has three unknowns and meets a handful of others.
@@ -16,27 +16,27 @@ from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_arr
 
 from .quantities import Array, Integers
 
-FEW = 300
-"""Most unknowns that are solved in full."""
+SOLVED_IN_FULL = 300
+"""Most unknowns of a structure that is solved in full."""
 MANY_UNKNOWNS = 20_000
 """Unknowns above which matrices are factorised with their pivots on the diagonal, in half the time and memory [-]."""
-LEFT_OVER = 1e-6
-"""What such factors may leave of a force, over it, before the matrix is factorised with other pivots [-]."""
+LARGEST_ERROR = 1e-6
+"""Error of a solution with such factors, over the force, above which the matrix is factorised with other pivots [-]."""
 DEPENDENT = 1e-9
 """Singular value of held motions below which they depend on one another, over the largest [-]."""
 YIELDING = 1e-6
-"""Compliance that is lent to every held motion while a large structure is balanced, over that of its stiffest unknown
+"""Compliance that every held motion is given while a large structure is balanced, over that of its stiffest unknown
 [-]. The unknowns that it moves may have no spring, as those along a course whose head joints are open."""
 REFINED, REFINEMENTS = 1e-13, 8
 """Error at which a balance is exact, over what is balanced [-], and most refinements of it."""
 SHIFT = 1e-9
-"""Square of a frequency by which those of a large structure are shifted, over that of the highest [-]. Motions that
-nothing resists are then no exception."""
+"""Shift of the squares of the frequencies of a large structure, over that of the highest [-], with which motions that
+nothing resists need no treatment of their own."""
 MIXTURES = 4
-"""Motions that stand for all that are loose in a large structure."""
-LARGE = 0.5
-"""Component of a mode that may give it its sign, over its largest [-]."""
-SEARCHED = 1e-12
+"""Motions that stand for all that nothing resists in a large structure."""
+SIGN_COMPONENT = 0.5
+"""Least component of a mode that may give it its sign, over its largest [-]."""
+EIGENVALUE_TOLERANCE = 1e-12
 """Tolerance of the search for a frequency of a large structure, over its square [-]."""
 
 
@@ -93,7 +93,7 @@ def summed(matrices: Sequence[csr_array]) -> csr_array:
     return csr_array((values, (rows, columns)), shape=matrices[0].shape)
 
 
-def rates_of(pair: Integers, arms: tuple[Array, Array], way: Array, bodies: int) -> csr_array:
+def rates_of(pair: Integers, arms: tuple[Array, Array], direction: Array, bodies: int) -> csr_array:
     """Rates at which places of pairs of bodies move apart in directions, for unit velocities.
 
     They are the generalised forces of unit forces that press the two apart.
@@ -101,17 +101,18 @@ def rates_of(pair: Integers, arms: tuple[Array, Array], way: Array, bodies: int)
     Args:
         pair: numbers of the two bodies, negative for one that is fixed, shape (rows, 2).
         arms: from the centroid of each to the place [m], shape (rows, 2) each, in space (rows, 3).
-        way: directions, of the same shape.
+        direction: unit vectors, of the same shape.
         bodies: how many there are.
 
     Returns:
         Rates for x, z and rotation of each body, shape (rows, 3 bodies). In space for x, y, z and the angular velocity
         in the axes of the world, shape (rows, 6 bodies).
     """
-    sides, plane = [], way.shape[1] == 2
+    sides, plane = [], direction.shape[1] == 2
     for sign, arm in zip((1.0, -1.0), arms, strict=True):
-        turning = (arm[:, 1] * way[:, 0] - arm[:, 0] * way[:, 1])[:, None] if plane else np.cross(arm, way)
-        sides.append(sign * np.hstack([way, turning]))
+        x, z = direction[:, 0], direction[:, -1]
+        turning = (arm[:, 1] * x - arm[:, 0] * z)[:, None] if plane else np.cross(arm, direction)
+        sides.append(sign * np.hstack([direction, turning]))
     return entries(np.stack(sides, axis=1), np.asarray(pair, dtype=np.int64), (3 if plane else 6) * bodies)
 
 
@@ -142,23 +143,23 @@ class _Balance:
         stiffest = float(stiffness.diagonal().max())
         self.stiffness, self.grip, self.back = stiffness, grip, csr_array(grip.T)
         yielding = diags_array(-YIELDING / stiffest * grip.power(2).sum(axis=1))
-        lent = diags_array(np.full(stiffness.shape[0], loose * stiffest))
-        near = block_array([[stiffness + lent, self.back], [grip, yielding]], format="csc")
+        added = diags_array(np.full(stiffness.shape[0], loose * stiffest))
+        near = block_array([[stiffness + added, self.back], [grip, yielding]], format="csc")
         self.factors = _factors(near)
 
     def __call__(self, force: Array) -> tuple[Array, Array]:
         """The motion u in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
 
-        What the solution of the near matrix leaves is balanced in turn.
+        The residual of a solution of the near matrix is balanced in turn.
         """
         n, held = self.grip.shape[1], self.grip.shape[0]
-        left, error, scale = np.append(force, np.zeros(held)), np.inf, float(np.abs(force).max())
+        residual, error, scale = np.append(force, np.zeros(held)), np.inf, float(np.abs(force).max())
         motion, holding = np.zeros(n), np.zeros(held)
         for _ in range(REFINEMENTS):
-            added = self.factors.solve(left)
-            motion, holding = motion + added[:n], holding + added[n:]
-            left = np.append(force - self.stiffness @ motion - self.back @ holding, -(self.grip @ motion))
-            last, error = error, float(np.abs(left).max())
+            correction = self.factors.solve(residual)
+            motion, holding = motion + correction[:n], holding + correction[n:]
+            residual = np.append(force - self.stiffness @ motion - self.back @ holding, -(self.grip @ motion))
+            last, error = error, float(np.abs(residual).max())
             if error < REFINED * scale or error > 0.5 * last:
                 break
         return motion, holding
@@ -175,7 +176,7 @@ def solution(matrix: csc_array, force: Array) -> Array:
     """The motion that a stiffness, which need not be symmetric, takes for a force, shape (unknowns,)."""
     if matrix.shape[0] > MANY_UNKNOWNS:
         motion: Array = _factors(matrix).solve(force)
-        if np.abs(matrix @ motion - force).max() <= LEFT_OVER * np.abs(force).max():
+        if np.abs(matrix @ motion - force).max() <= LARGEST_ERROR * np.abs(force).max():
             return motion
     return scipy.sparse.linalg.splu(matrix).solve(force)  # type: ignore[no-any-return]
 
@@ -186,7 +187,7 @@ def lowest_mode(matrix: csr_array, most: float) -> tuple[float, Array]:
     The first of its large components is positive: no rounding decides which way it points.
     """
     n = matrix.shape[0]
-    if n <= FEW:
+    if n <= SOLVED_IN_FULL:
         values, modes = np.linalg.eigh(matrix.toarray())
     else:
         start = np.random.default_rng(0).random(n)
@@ -195,16 +196,16 @@ def lowest_mode(matrix: csr_array, most: float) -> tuple[float, Array]:
             factors = _factors(csc_array(matrix - shift * eye_array(n)))
             inverse = scipy.sparse.linalg.LinearOperator((n, n), factors.solve, dtype=float)
         values, modes = scipy.sparse.linalg.eigsh(
-            matrix, 1, sigma=shift, which="LM", tol=SEARCHED, v0=start, OPinv=inverse
+            matrix, 1, sigma=shift, which="LM", tol=EIGENVALUE_TOLERANCE, v0=start, OPinv=inverse
         )
     mode = modes[:, 0]
-    return float(values[0]), mode * np.sign(mode[np.argmax(np.abs(mode) > LARGE * np.abs(mode).max())])
+    return float(values[0]), mode * np.sign(mode[np.argmax(np.abs(mode) > SIGN_COMPONENT * np.abs(mode).max())])
 
 
 def loose(rows: csr_array) -> Array:
     """Motions at which no row has a rate, shape (unknowns, motions): a basis, of many unknowns random mixtures."""
     n = rows.shape[1]
-    if n <= FEW:
+    if n <= SOLVED_IN_FULL:
         return scipy.linalg.null_space(rows.toarray(), rcond=DEPENDENT)  # type: ignore[no-any-return]
     gram = csc_array(rows.T @ rows)
     shift = SHIFT * float(gram.diagonal().max())
@@ -219,10 +220,14 @@ def highest_square(stiffness: csr_array, masses: Array) -> float:
     """The highest square of a natural frequency [rad2/s2]."""
     root = diags_array(1 / np.sqrt(masses))
     matrix = csr_array(root @ stiffness @ root)
-    if len(masses) <= FEW:
+    if len(masses) <= SOLVED_IN_FULL:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(len(masses))
-    return float(scipy.sparse.linalg.eigsh(matrix, 1, which="LA", tol=SEARCHED, v0=start, return_eigenvectors=False)[0])
+    return float(
+        scipy.sparse.linalg.eigsh(matrix, 1, which="LA", tol=EIGENVALUE_TOLERANCE, v0=start, return_eigenvectors=False)[
+            0
+        ]
+    )
 
 
 def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: float) -> float:
@@ -236,9 +241,9 @@ def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: f
     """
     n, root = len(masses), diags_array(1 / np.sqrt(masses))
     stiffness, grip = csr_array(root @ stiffness @ root), csr_array(grip @ root)
-    if n <= FEW:
+    if n <= SOLVED_IN_FULL:
         return _lowest_in_full(stiffness, grip, rigid)
-    # for the shift a bound will do, which is found at once
+    # a bound is enough for the shift, and takes no search
     highest = highest_square(stiffness, np.ones(n)) if n <= MANY_UNKNOWNS else float(abs(stiffness).sum(axis=1).max())
     if highest == 0:
         return 0.0
@@ -248,7 +253,7 @@ def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: f
     while count < n // 2:
         # the inverse of the shifted squares is largest for the lowest of them
         inverses = scipy.sparse.linalg.eigsh(
-            inverse, count, which="LA", tol=SEARCHED, v0=start, return_eigenvectors=False
+            inverse, count, which="LA", tol=EIGENVALUE_TOLERANCE, v0=start, return_eigenvectors=False
         )
         squares = np.sort(1 / inverses) - SHIFT * highest
         resisted = squares[squares > 0.5 * SHIFT * highest]

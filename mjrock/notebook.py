@@ -1,4 +1,4 @@
-"""What a notebook shows of an answer, without a call: its picture or its table."""
+"""Pictures and tables that a notebook shows of an answer without a call."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from html import escape
 from typing import ClassVar
 
 VERDICTS = {"HOLDS": "#2c6e49", "FAILS": "#b5402a"}
-"""Of the words of a verdict."""
+"""Colours of the words of a verdict."""
 
 
 class NotebookPicture:
-    """What a notebook shows as a picture, that of its type in `mjrock.plotting.notebook`."""
+    """Base of classes that a notebook shows as pictures, which `mjrock.plotting.notebook` draws by their types."""
 
     _png_of: ClassVar[Callable[[object], bytes | None]]
     """Draws it. The top of the package sets this, since pictures stand above what they show."""

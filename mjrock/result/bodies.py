@@ -18,7 +18,7 @@ from ..problem.wall.rest_geometry import JointFrames, in_space
 from ..quantities import Array, Flags, Integers, require_within
 from ..scene.tints import colours_of
 
-SHORT_WAY = 1e-6
+SUPPORT_INTERVAL = 1e-6
 """Half the time over which the velocity of a support is taken [s]."""
 SAME_LEVEL = 1e-3
 """Height up to which fixed bodies lie on one level, over the extent of the free ones [-]."""
@@ -125,11 +125,11 @@ class BodyMotion:
         return displaced(points - self.case.centroids[block], self.pose_of(block))
 
     def at(self, numbers: Sequence[int] | Integers) -> BodyMotion:
-        """The body at some of the times."""
+        """The bodies at some of the times, by their numbers."""
         return replace(self, t=self.t[numbers], pose=self.pose[numbers])
 
     def between(self, times: Array) -> BodyMotion:
-        """The body at other times [s]; poses are interpolated linearly between the samples."""
+        """The bodies at other times [s]; poses are interpolated linearly between the samples."""
         columns = self.pose.reshape(len(self.t), -1).T
         pose = np.stack([np.interp(times, self.t, column) for column in columns], axis=-1)
         pose = pose.reshape(len(times), *self.pose.shape[1:])
@@ -191,17 +191,27 @@ def bodies_of(moving: BodyMotion, velocity: Array) -> list[Body]:
     bodies = []
     for solid, colour in zip(case.rest_geometry.solids, colours_of(case.rest_geometry), strict=True):
         body, support = case.body_of(solid.block), case.support_of(solid.block)
-        where, rate = np.tile(np.eye(1, 7, 3), (len(t), 1)), np.zeros((len(t), 6))
+        pose, rate = np.tile(np.eye(1, 7, 3), (len(t), 1)), np.zeros((len(t), 6))
         if solid.block is not None:
-            where = _in_space(moving.pose_of(solid.block))
+            pose = _in_space(moving.pose_of(solid.block))
         if body is not None:
             rate = velocity[:, body]
         elif support is not None:
-            after, before = (in_space(support.at(t + step)) for step in (SHORT_WAY, -SHORT_WAY))
-            rate[:, :3] = (after - before) / (2 * SHORT_WAY)
-        moves = body is not None or support is not None
-        shape = solid.name, solid.corners, solid.faces, solid.rest
-        bodies.append(Body(*shape, colour, where, rate, solid.fixed, moves))
+            after, before = (in_space(support.at(t + step)) for step in (SUPPORT_INTERVAL, -SUPPORT_INTERVAL))
+            rate[:, :3] = (after - before) / (2 * SUPPORT_INTERVAL)
+        bodies.append(
+            Body(
+                name=solid.name,
+                corners=solid.corners,
+                faces=solid.faces,
+                rest=solid.rest,
+                colour=colour,
+                pose=pose,
+                velocity=rate,
+                fixed=solid.fixed,
+                moves=body is not None or support is not None,
+            )
+        )
     return bodies
 
 

@@ -36,11 +36,11 @@ class Measure(NamedTuple):
 
     name: str
     unit: str
-    of: str
+    attribute: str
     form: str | None
 
 
-OF_AN_IMPACT = (
+MEASURES_OF_IMPACTS = (
     Measure("impact time", "s", "impact_times", "8.4f"),
     Measure("restitution", "-", "restitution", "7.4f"),
     Measure("rebound peak", "theta/alpha", "rebound_peaks", "7.5f"),
@@ -48,7 +48,7 @@ OF_AN_IMPACT = (
     Measure("energy loss share", "of release", "energy_share", "7.2%"),
 )
 HEADINGS = " time [s] ", "restitution [-]", "peak/alpha [-]", "loss / release"
-"""Of the measures of a table."""
+"""Heads of the measures in a table."""
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ class Comparison(NotebookPicture):
     @property
     def _measured(self) -> Array:
         """The measures of all impacts, reference and candidate, shape (n, measures, 2), NaN where one has none."""
-        columns = [getattr(self, measure.of) for measure in OF_AN_IMPACT]
+        columns = [getattr(self, measure.attribute) for measure in MEASURES_OF_IMPACTS]
         measured = np.full((max(map(len, columns)), len(columns), 2), np.nan)
         for i, values in enumerate(columns):
             measured[: len(values), i] = values
@@ -160,7 +160,7 @@ class Comparison(NotebookPicture):
 
     def rows(self) -> list[dict[str, float]]:
         """One row an impact, for a table or a CSV file; names carry their units."""
-        names = [f"{one.name}, {solver} [{one.unit}]" for one in OF_AN_IMPACT for solver in self._labels]
+        names = [f"{one.name}, {solver} [{one.unit}]" for one in MEASURES_OF_IMPACTS for solver in self._labels]
         values = self._measured.reshape(-1, len(names)).tolist()
         return [{"impact": i + 1} | dict(zip(names, row, strict=True)) for i, row in enumerate(values)]
 
@@ -181,7 +181,7 @@ class Comparison(NotebookPicture):
         for i, row in enumerate(self._measured[: max(0, most)].tolist()):
             cells = (
                 " ".join(f"{'-':>{one.form[0]}}" if math.isnan(value) else f"{value:{one.form}}" for value in both)
-                for one, both in zip(OF_AN_IMPACT, row, strict=True)
+                for one, both in zip(MEASURES_OF_IMPACTS, row, strict=True)
                 if one.form is not None
             )
             lines.append(f"{i + 1:>6} | " + " | ".join(cells))
@@ -237,15 +237,15 @@ def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least
     """
     kept = [[i for i, impact in enumerate(side) if impact.energy_before >= least] for side in (left, right)]
     a, b = (np.array([side[i].t for i in own]) for side, own in zip((left, right), kept, strict=True))
-    pairs, alone = [], set(range(len(b)))
+    pairs, unpaired = [], set(range(len(b)))
     for i, t in enumerate(a):
         j = int(np.abs(b - t).argmin()) if len(b) else -1
         if j >= 0 and abs(b[j] - t) <= within and int(np.abs(a - b[j]).argmin()) == i:
             pairs.append((t, kept[0][i], kept[1][j]))
-            alone.discard(j)
+            unpaired.discard(j)
         else:
             pairs.append((t, kept[0][i], -1))
-    pairs += [(b[j], -1, kept[1][j]) for j in alone]
+    pairs += [(b[j], -1, kept[1][j]) for j in unpaired]
     return np.array([numbers for _, *numbers in sorted(pairs)], dtype=np.int64).reshape(-1, 2)
 
 

@@ -13,9 +13,9 @@ from ..problem.wall.case import Case
 from ..quantities import Array, named
 
 LAST_SECOND, STANDS_STILL = 1.0, 1e-3
-"""Time at the end of a run in which nothing may move that is at rest [s], and how far a point may, over the size of its
-body [-]."""
-LEAST_NAMED = 1e-5
+"""Time at the end of a run in which a structure at rest does not move [s], and motion of a point in it that still
+counts as rest, over the size of its body [-]."""
+LEAST_MOTION = 1e-5
 """Motion below which messages give no number [m]."""
 
 
@@ -28,7 +28,7 @@ class Outcome(enum.Enum):
 
 
 class Standstill(NamedTuple):
-    """How much still moves at the end of a run. Nothing does at rest, neither a wall nor a block of masonry.
+    """The motion at the end of a run, of a wall or of the block of masonry that moves most.
 
     Args:
         name: of the body that has moved farthest, over its size.
@@ -65,7 +65,7 @@ class Standstill(NamedTuple):
 
     def described(self, subject: str) -> str:
         """How far the subject has moved, and its kinetic energy, in words."""
-        far = f"{1e3 * self.moved:.2g} mm" if self.moved > LEAST_NAMED else f"less than {1e3 * LEAST_NAMED:g} mm"
+        far = f"{1e3 * self.moved:.2g} mm" if self.moved > LEAST_MOTION else f"less than {1e3 * LEAST_MOTION:g} mm"
         kinetic = f"{self.kinetic:.2g} times" if self.kinetic > 0.01 else "less than 1 % of"
         return (
             f"In the last second {subject} moved by {far}, and it has {kinetic} the kinetic energy that opens a joint."
@@ -126,7 +126,7 @@ def masonry_ending(
 
     Args:
         fallen: when each block fell [s].
-        standstill: how much moves at the end.
+        standstill: the motion at the end.
         quiet: whether the energy above rest no longer opens a joint.
         t_end: end of the run [s].
         everywhere: whether all contacts are found.

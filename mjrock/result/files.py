@@ -74,7 +74,7 @@ def turns(quaternions: Array) -> Array:
 
 
 def linear(colour: Array) -> list[float]:
-    """A colour as a screen shows it, in the parts of light of which glTF makes it (IEC 61966-2-1), 0 to 1."""
+    """A colour of a screen (sRGB) as the linear intensities that glTF takes (IEC 61966-2-1), 0 to 1."""
     parts = np.where(colour > 0.04045, ((colour + 0.055) / 1.055) ** 2.4, colour / 12.92)
     return [float(f"{part:.4g}") for part in parts]
 
@@ -109,8 +109,8 @@ def write_gltf(path: str | Path, t: Array, bodies: list[Body], record: Json) -> 
         start = {"translation": places[0].tolist(), "rotation": turned[0].tolist()}
         nodes.append({"name": body.name, "mesh": node} | start)
         moves = (("translation", places, "VEC3"), ("rotation", turned, "VEC4")) if body.moves else ()
-        for what, values, kind in moves:
-            channels.append({"sampler": len(samplers), "target": {"node": node, "path": what}})
+        for property_moved, values, kind in moves:
+            channels.append({"sampler": len(samplers), "target": {"node": node, "path": property_moved}})
             samplers.append({"input": times, "output": numbers.add(values, kind), "interpolation": "LINEAR"})
     text = {
         "asset": {"version": "2.0", "generator": "mjrock", "extras": record},
@@ -307,10 +307,10 @@ def at_corners(corners: Array, eccentricity: Array) -> Array:
         eccentricity: of the force from there [m], shape (2,).
     """
     conditions = np.vstack([np.ones(len(corners)), corners.T / np.abs(corners).max()])
-    wanted = np.append(1.0, eccentricity / np.abs(corners).max())
-    shares = np.linalg.lstsq(conditions, wanted)[0]
+    resultant = np.append(1.0, eccentricity / np.abs(corners).max())
+    shares = np.linalg.lstsq(conditions, resultant)[0]
     if shares.min() < 0:
         from scipy.optimize import nnls  # takes half a second, and is seldom needed
 
-        shares = nnls(conditions, wanted)[0]
+        shares = nnls(conditions, resultant)[0]
     return np.asarray(shares / shares.sum())

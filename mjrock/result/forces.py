@@ -124,11 +124,11 @@ class KeptForces(NamedTuple):
     damage: Array | None = None
 
 
-def forces_of(case: AnyCase, frames: JointFrames, gathered: KeptForces) -> Forces:
-    """The forces of a run from those that were kept."""
+def forces_of(case: AnyCase, frames: JointFrames, kept: KeptForces) -> Forces:
+    """The forces of a run from those that its solver has kept."""
     d = frames.middle.shape[1]
-    middle, axes = BodyMotion(case, gathered.t, gathered.pose).joints(frames)
-    force, about = gathered.loads[..., :d], gathered.loads[..., d:]
+    middle, axes = BodyMotion(case, kept.t, kept.pose).joints(frames)
+    force, about = kept.loads[..., :d], kept.loads[..., d:]
     along = np.matmul(axes, force[..., None])[..., 0]
     normal, shear = along[..., 0], along[..., 1:]
     if d == 2:
@@ -139,58 +139,77 @@ def forces_of(case: AnyCase, frames: JointFrames, gathered: KeptForces) -> Force
         bends = np.stack([-moment[..., 2], moment[..., 1]], axis=-1)
     acts = (normal != 0)[..., None]
     eccentricity = np.where(acts, bends, np.nan) / np.where(acts, normal[..., None], 1.0)
-    reactions = {name: gathered.held[:, i].copy() for i, name in enumerate(frames.blocks)}
-    guides = guides_of(case, gathered)
-    add_links(case, gathered, reactions)
+    reactions = {name: kept.held[:, i].copy() for i, name in enumerate(frames.blocks)}
+    guides = guides_of(case, kept)
+    add_links(case, kept, reactions)
     for guide in guides.values():
         reactions[ANCHORS][:, -1] += guide[:, 0]
     if d == 2:
         shear, eccentricity = shear[..., 0], eccentricity[..., 0]
-    damage = np.full(normal.shape, np.nan) if gathered.damage is None else gathered.damage
-    along_faces = normal.copy(), shear.copy(), eccentricity, moment
-    return Forces(frames, *along_faces, dict(gathered.pulled), reactions, guides, damage)
+    damage = np.full(normal.shape, np.nan) if kept.damage is None else kept.damage
+    return Forces(
+        frames=frames,
+        normal=normal.copy(),
+        shear=shear.copy(),
+        eccentricity=eccentricity,
+        moment=moment,
+        links=dict(kept.pulled),
+        reactions=reactions,
+        guides=guides,
+        damage=damage,
+    )
 
 
-def guides_of(case: AnyCase, gathered: KeptForces) -> dict[str, Array]:
+def guides_of(case: AnyCase, kept: KeptForces) -> dict[str, Array]:
     """Forces of guides on the blocks of actuators, see `Forces`: they balance all other forces on these blocks."""
     guides: dict[str, Array] = {}
     d = 3 if case.in_space else 2
     for i, actuator in enumerate(case.actuators.values()):
-        if actuator.block is None or gathered.guided is None:
+        if actuator.block is None or kept.guided is None:
             continue
-        name, upwards = case.blocks[actuator.block], -gathered.guided[:, i, d - 1]
+        name, upwards = case.blocks[actuator.block], -kept.guided[:, i, d - 1]
         if actuator.guide.rising or (actuator.guide.turning and name not in guides):
             upwards = upwards if actuator.guide.rising else np.zeros_like(upwards)
-            guides[name] = np.column_stack([upwards, -gathered.guided[:, i, d:]])
+            guides[name] = np.column_stack([upwards, -kept.guided[:, i, d:]])
     return guides
 
 
-def add_links(case: AnyCase, gathered: KeptForces, reactions: dict[str, Array]) -> None:
+def add_links(case: AnyCase, kept: KeptForces, reactions: dict[str, Array]) -> None:
     """Add the forces of links to the reactions of the blocks that they are anchored on, and to that of all anchors."""
-    moving, blocks = BodyMotion(case, gathered.t, gathered.pose), case.blocks
-    for name, pulled in gathered.pulled.items():
+    moving, blocks = BodyMotion(case, kept.t, kept.pose), case.blocks
+    for name, pulled in kept.pulled.items():
         if name not in case.links:
             continue  # of a device that only explicit steps have
         link = case.links[name]
         if case.body_of(link.anchor_block) is not None:
             continue
-        way, anchor = link_vector(moving, link), ANCHORS if link.anchor_block is None else blocks[link.anchor_block]
-        force = -(pulled / np.linalg.norm(way, axis=1))[:, None] * way
+        vector, anchor = link_vector(moving, link), ANCHORS if link.anchor_block is None else blocks[link.anchor_block]
+        force = -(pulled / np.linalg.norm(vector, axis=1))[:, None] * vector
         reactions[anchor] = reactions.get(anchor, 0.0) + force
-    if case.actuators and gathered.driven is not None:
-        ways = np.array([actuator.direction for actuator in case.actuators.values()])
-        reactions[ANCHORS] = reactions.get(ANCHORS, 0.0) + gathered.driven @ ways
+    if case.actuators and kept.driven is not None:
+        directions = np.array([actuator.direction for actuator in case.actuators.values()])
+        reactions[ANCHORS] = reactions.get(ANCHORS, 0.0) + kept.driven @ directions
 
 
-def required_room(case: AnyCase, samples: float) -> tuple[int, int, int, int]:
-    """How many joints, fixed blocks, links and actuators a case has.
+class ForceCounts(NamedTuple):
+    """Numbers of the joints, fixed blocks, links and actuators of a case."""
+
+    joints: int
+    fixed: int
+    links: int
+    actuators: int
+
+
+def required_room(case: AnyCase, samples: float) -> ForceCounts:
+    """The numbers of what has forces in a case.
 
     Raises:
         ValueError: if their forces at the samples do not fit into memory.
     """
     frames = case.rest_geometry.frames
-    d, driven = frames.middle.shape[1], len(case.actuators)
-    counts = len(frames.names), len(frames.blocks), len(case.links), driven
-    numbers = samples * (counts[0] * 4 * (d - 1) + counts[1] * d + counts[2] + driven * (1 if d == 2 else 3))
+    d = frames.middle.shape[1]
+    counts = ForceCounts(len(frames.names), len(frames.blocks), len(case.links), len(case.actuators))
+    of_sample = counts.joints * 4 * (d - 1) + counts.fixed * d + counts.links + counts.actuators * (1 if d == 2 else 3)
+    numbers = samples * of_sample
     require_size("the forces of this answer", numbers, "raise output_step, or leave the forces out")
     return counts

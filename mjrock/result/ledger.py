@@ -16,8 +16,8 @@ from ..scene.time_step import ENERGY_GAIN
 class StepError(RuntimeError):
     """Steps have become unstable at the time `t` [s]; energy has grown by `share` of the energy before [-]."""
 
-    def __init__(self, what: str, t: float, share: float = 0.0) -> None:
-        super().__init__(what)
+    def __init__(self, message: str, t: float, share: float = 0.0) -> None:
+        super().__init__(message)
         self.t, self.share = t, share
 
 
@@ -26,11 +26,12 @@ def require_no_gain(t: Array, balance: Array, scale: float) -> None:
 
     Args:
         t: times at which energy is judged [s], shape (n,). Each solver takes those at which it knows its energy best.
-        balance: energy that is there and was taken then, less what was put in [J], shape (n,). It may only fall.
-        scale: the energy there was [J].
+        balance: energy that is there and was taken by then, less the energy that was put in [J], shape (n,). It may
+            only fall.
+        scale: the energy with which the gain is compared [J].
 
     Raises:
-        StepError: if more has appeared.
+        StepError: if energy has appeared from nowhere.
     """
     gains = balance - np.minimum.accumulate(balance)
     worst = int(gains.argmax())

@@ -29,7 +29,7 @@ ground motion [-]."""
 UNPAID = 0.01
 """Error of the balance of masonry above which there is a warning, over the largest part of the ledger [-]."""
 
-IN_TEXT = {"k", "reach", "strength", "push", "c"}
+NUMBERS_IN_TEXT = {"k", "reach", "strength", "push", "c"}
 """The numbers of a `LinkLaw` that the text of a model has."""
 PARTS = ("pose", "velocity")
 UNIT_ROUNDING = 1e-6
@@ -37,7 +37,13 @@ UNIT_ROUNDING = 1e-6
 
 
 class EnergyImbalance(NamedTuple):
-    """Energy without an account [J], what it is compared with [J] and in words, and the share that is warned of."""
+    """Energy without an account.
+
+    Args:
+        energy: that energy [J].
+        whole, label: the energy that it is compared with [J], and its name.
+        share: the share of it above which there is a warning [-].
+    """
 
     energy: float
     whole: float
@@ -191,8 +197,8 @@ def require_in_text(case: AnyCase) -> None:
     """Raise ValueError for a link whose law the text of a model, and so a fixed step, cannot describe."""
     for name, link in case.links.items():
         kind: Callable[..., object] = type(link)
-        for number, usual in link.law._field_defaults.items():
-            if number not in IN_TEXT and (value := getattr(link.law, number)) != usual:
+        for number, default in link.law._field_defaults.items():
+            if number not in NUMBERS_IN_TEXT and (value := getattr(link.law, number)) != default:
                 unit = declared(kind)[number].within.unit
                 raise ValueError(
                     f"a fixed step is the text of a model, which cannot describe the law of each link, and {name} has "

@@ -77,13 +77,13 @@ def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion
     """Impacts, peaks and the ending of a wall. `released` is whether the motion starts with the release."""
     uplift, theta, omega = Uplift.from_case(case, contacts), motion.theta[:, 0], motion.velocity[:, 0, 2]
     rotation = RotationHistory(t, theta, omega, motion.energy)
-    times, peaks, impacts = rocking_history(case, rotation, uplift, released=released)
+    history = rocking_history(case, rotation, uplift, released=released)
     slip = motion.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return Reading(
         *ending(case, t, motion.pose[:, 0], motion.energy, uplift.energy, motion.velocity[-1, 0]),
-        rocking=Rocking(impacts, peaks),
+        rocking=Rocking(history.impacts, history.peaks),
         count=case.returning(theta),
-        peak_times=times,
+        peak_times=history.times,
         slip=slip / case.block.half_base,
         stats={"base_displacement": float(np.interp(case.duration, t, slip) - slip[0])},
     )

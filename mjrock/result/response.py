@@ -550,25 +550,24 @@ class Response(NotebookPicture):
     def __repr__(self) -> str:
         if self.joints is None:
             alpha = float(self.peak[0]) / self.of_wall[0].wall.alpha
-            what = f"{len(self.impacts)} impacts, largest rotation {alpha:.3g} alpha"
+            motion = f"{len(self.impacts)} impacts, largest rotation {alpha:.3g} alpha"
         else:
-            what = f"largest opening {self.opening.max(initial=0):.3g} m, "
-            what += f"{len(self.fallen)} of {len(self.bodies)} blocks fallen"
-        return (
-            f"<Response of {self.solver}: {len(self.t)} samples over {self.t[-1]:.4g} s, {what}, {self.outcome.value}>"
-        )
+            motion = f"largest opening {self.opening.max(initial=0):.3g} m, "
+            motion += f"{len(self.fallen)} of {len(self.bodies)} blocks fallen"
+        samples = f"{len(self.t)} samples over {self.t[-1]:.4g} s"
+        return f"<Response of {self.solver}: {samples}, {motion}, {self.outcome.value}>"
 
 
 MasonryResponse = Response
 """The response of masonry, which is like that of a wall."""
 
 
-def recorded(response: Response, given: Mapping[str, Any]) -> Response:
-    """A response that was just made, with what its solver was given, by the names of its arguments."""
-    options = {name: value for name, value in given.items() if name not in ("case", "contacts", "e")}
+def recorded(response: Response, arguments: Mapping[str, Any]) -> Response:
+    """A response that was just made, with the arguments of its solver, by their names, as its origin."""
+    options = {name: value for name, value in arguments.items() if name not in ("case", "contacts", "e")}
     if isinstance(start := options.get("start"), End):
         options["start"] = replace(start, memory=None)
-    keep(response, origin=Origin(given.get("contacts"), given.get("e"), options))
+    keep(response, origin=Origin(arguments.get("contacts"), arguments.get("e"), options))
     return response
 
 

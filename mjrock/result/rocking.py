@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..problem.damping.contacts import Uplift
 from ..problem.wall.case import Case
 from ..quantities import Array
 
@@ -106,6 +107,20 @@ def largest_rotations(case: Case, rocking: Rocking, theta: Array) -> tuple[float
     return (peak, max(inwards, 0.0)) if outwards >= inwards else (max(outwards, 0.0), peak)
 
 
+class RockingHistory(NamedTuple):
+    """Rotation peaks of a wall and the impacts between them.
+
+    Args:
+        times: times of the peaks [s], shape (m,).
+        peaks: |theta| at the peaks [rad], shape (m,).
+        impacts: the impacts in order.
+    """
+
+    times: Array
+    peaks: Array
+    impacts: tuple[Impact, ...]
+
+
 class RotationHistory(NamedTuple):
     """The sampled rotation of a wall, finely enough to find its impacts.
 
@@ -122,25 +137,23 @@ class RotationHistory(NamedTuple):
     energy: Array
 
 
-def rocking_history(
-    case: Case, motion: RotationHistory, uplift: tuple[float, float], *, released: bool = True
-) -> tuple[Array, Array, tuple[Impact, ...]]:
-    """Times and sizes of the rotation peaks, and the impacts between them, of a sampled rocking motion.
+def rocking_history(case: Case, motion: RotationHistory, uplift: Uplift, *, released: bool = True) -> RockingHistory:
+    """The rotation peaks of a sampled rocking motion, and the impacts between them.
 
     Args:
         case: the case. Its release is the first peak unless it is released on its way out.
         motion: the motion.
-        uplift: the rotation at which an edge of the base lifts [rad], and the energy above rest that belongs to it [J].
-            A smaller maximum is an elastic motion of the base and no rocking. With a side stop, a maximum behind
-            theta = 0 is an elastic motion of the stop, whatever its size.
+        uplift: the rotation and the energy at which an edge of the base lifts. A smaller maximum is an elastic motion
+            of the base and no rocking. With a side stop, a maximum behind theta = 0 is an elastic motion of the stop,
+            whatever its size.
         released: whether the motion starts with the release. False where it continues an earlier one.
 
     Returns:
-        Peak times [s], peaks |theta| [rad], and the impacts. In free rocking an impact is found from the peaks before
-        and after it. On a shaken base it is found from the velocities at which the wall passes the uplift rotation.
+        Peaks and impacts. In free rocking an impact is found from the peaks before and after it. On a shaken base it is
+        found from the velocities at which the wall passes the uplift rotation.
     """
     times, sizes = _maxima(motion, one_sided=case.one_sided)
-    rocking = sizes > uplift[0]
+    rocking = sizes > uplift.rotation
     prepended = released and not case.released_outwards and case.release_energy > 0
     if prepended:
         rocking &= times > motion.t[1]  # the release itself, where its velocity differs from zero by rounding
@@ -149,8 +162,8 @@ def rocking_history(
     if prepended:
         times, sizes = np.append(motion.t[0], times), np.append(case.release_peak, sizes)
     if case.shaken:
-        return times, sizes, _between_passes(case, motion, uplift)
-    return times, sizes, _between_peaks(case, motion, times, sizes, residual, uplift[0])
+        return RockingHistory(times, sizes, _between_passes(case, motion, uplift))
+    return RockingHistory(times, sizes, _between_peaks(case, motion, times, sizes, residual, uplift.rotation))
 
 
 def _maxima(motion: RotationHistory, *, one_sided: bool) -> tuple[Array, Array]:
@@ -216,7 +229,7 @@ def _energy_after_last(case: Case, motion: RotationHistory, residual: Array, thr
     return math.nan
 
 
-def _between_passes(case: Case, motion: RotationHistory, uplift: tuple[float, float]) -> tuple[Impact, ...]:
+def _between_passes(case: Case, motion: RotationHistory, uplift: Uplift) -> tuple[Impact, ...]:
     """One impact for each time that the rotation falls below the uplift rotation.
 
     The energy before it is that of the rigid wall as it falls below that rotation. The energy after it is that of the
@@ -247,5 +260,13 @@ def _between_passes(case: Case, motion: RotationHistory, uplift: tuple[float, fl
             after += 0.5 * wall.inertia_about(side) * float(omega[j + 1]) ** 2
         arriving = math.sqrt(2 * before / wall.inertia_about(s))
         leaving = math.sqrt(2 * after / wall.inertia_about(side))
-        impacts.append(Impact(float(t[crossed]), -s * arriving, side * leaving, before, after))
+        impacts.append(
+            Impact(
+                t=float(t[crossed]),
+                omega_before=-s * arriving,
+                omega_after=side * leaving,
+                energy_before=before,
+                energy_after=after,
+            )
+        )
     return tuple(impacts)

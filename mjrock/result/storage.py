@@ -38,7 +38,7 @@ NUMBERS_IN_JSON = re.compile(r"\[\n\s+([-\d][^\[\]{}\"]*?)\n\s+\]")
 
 
 class StoredArray(NamedTuple):
-    """An array of a file that is at no place of the top: the array, its unit and what it is."""
+    """An array of a file that is not one of those at the top: the array, its unit and its description."""
 
     values: Any
     units: str

@@ -26,6 +26,7 @@ from ..quantities import shown, spelt, warn_of
 Tree = Any
 """None, a truth value, a number, a text, a list of trees or a dictionary of them by text."""
 OWN_PACKAGE = __name__.partition(".")[0]
+"""The name of this package."""
 FOLDERS = ("problem", "scene", "geometry", "result", "theory", "distinct", "method", "contacts")
 """Where classes may stand that a file names. No example or command is imported."""
 SINGLE = (bool, int, str, type(None))
@@ -97,7 +98,7 @@ def _is_below(head: str, line: str) -> bool:
 
 
 class Writer:
-    """What turns objects into trees.
+    """Makes trees of objects.
 
     Args:
         keep: takes the path of an array, the array, and the class and field that it is of, and returns the name by
@@ -105,7 +106,7 @@ class Writer:
         has_place: whether an array has such a name already.
 
     Attributes:
-        lost: what could not be kept, by its path.
+        lost: values that could not be kept, in words, by their paths.
     """
 
     def __init__(
@@ -167,8 +168,8 @@ class Writer:
     def _of_object(self, value: object, path: str) -> Tree:
         """The tree of an object by its fields. One that may have functions has a method that puts values there."""
         kind, plain = type(value), getattr(value, "without_functions", None)
-        held = value if plain is None else plain()
-        parts = {name: self.tree(getattr(held, name), f"{path}.{name}", kind, name) for name in fields_of(kind)}
+        stored = value if plain is None else plain()
+        parts = {name: self.tree(getattr(stored, name), f"{path}.{name}", kind, name) for name in fields_of(kind)}
         if not is_named_tuple(kind):
             members = (pair for base in kind.__mro__ for pair in vars(base).items())
             cached = {name for name, one in members if isinstance(one, cached_property)}
@@ -184,7 +185,7 @@ class Writer:
 
 
 class Reader:
-    """What turns trees into objects again.
+    """Makes objects of trees.
 
     Args:
         arrays: the arrays by their names.
@@ -252,7 +253,7 @@ class Reader:
         return values
 
     def _object(self, tree: dict[str, Tree], path: str) -> Any:
-        """An object of a class, by the fields of it. Fields that the file lacks have their usual values."""
+        """An object of a class, by its fields. Those that the file lacks have their defaults."""
         kind = self._class(tree["class"], path)
         if issubclass(kind, enum.Enum):
             if tree.get("member") not in kind.__members__:
@@ -264,13 +265,13 @@ class Reader:
                 f"{path} is of the class {tree['class']}, whose methods have changed since the file was written, or "
                 "are compiled by another Python: a run that goes on from it may be another"
             )
-        usual = _usual(kind)
-        odd = [*sorted(given - set(known)), *(name for name in known if name not in given and name not in usual)]
-        if odd:
+        defaults = _defaults_of(kind)
+        other = [*sorted(given - set(known)), *(name for name in known if name not in given and name not in defaults)]
+        if other:
             message = f"{path} is of the class {tree['class']}, which has other fields in this version of mjrock"
-            raise UnreadableError(f"{message}: {', '.join(odd)}")
+            raise UnreadableError(f"{message}: {', '.join(other)}")
         at = f"{path}." if path else ""
-        values = {name: self.value(tree[name], at + name) if name in given else usual[name]() for name in known}
+        values = {name: self.value(tree[name], at + name) if name in given else defaults[name]() for name in known}
         if is_named_tuple(kind):
             made = kind(**values)
         else:
@@ -306,14 +307,14 @@ class Reader:
         return kind
 
 
-def _usual(kind: type) -> dict[str, Callable[[], Any]]:
-    """What gives the usual value of each field of a class that has one."""
+def _defaults_of(kind: type) -> dict[str, Callable[[], Any]]:
+    """Functions that give the default of each field of a class that has one."""
     if is_named_tuple(kind):
         return {name: partial(deepcopy, one) for name, one in kind._field_defaults.items()}  # type: ignore[attr-defined]
-    usual: dict[str, Callable[[], Any]] = {}
+    defaults: dict[str, Callable[[], Any]] = {}
     for each in dataclasses.fields(kind):
         if each.default_factory is not dataclasses.MISSING:
-            usual[each.name] = each.default_factory
+            defaults[each.name] = each.default_factory
         elif each.default is not dataclasses.MISSING:
-            usual[each.name] = partial(deepcopy, each.default)
-    return usual
+            defaults[each.name] = partial(deepcopy, each.default)
+    return defaults

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,8 +41,13 @@ def variables_of(answer: Any) -> dict[str, Variable]:
 
     They are the arrays of the response themselves, and not copies, where it has them as arrays.
     """
-    found = {name: Variable((name,), values, units, text) for name, values, units, text in _coordinates(answer)}
-    for name, variable in (*_of_motion(answer), *_of_forces(answer.kept_forces), *_of_ledger(answer.ledger)):
+    found = dict[str, Variable]()
+    for name, variable in (
+        *_coordinates(answer),
+        *_of_motion(answer),
+        *_of_forces(answer.kept_forces),
+        *_of_ledger(answer.ledger),
+    ):
         found[_unused(re.sub(r"[/\0]", "_", name), found)] = variable
     return found
 
@@ -75,24 +80,25 @@ def _unused(name: str, found: Mapping[str, object]) -> str:
     return free
 
 
-def _coordinates(answer: Any) -> Iterator[tuple[str, Array, str, str]]:
-    """Names, values, units and descriptions of what numbers the dimensions."""
-    yield "t", answer.t, "s", "time"
-    yield "body", _texts(answer.bodies), "", "name of a body that moves"
+def _coordinates(answer: Any) -> Iterator[tuple[str, Variable]]:
+    """The times, and names of the elements along the other dimensions."""
+    yield "t", Variable(("t",), answer.t, "s", "time")
+    yield _names("body", answer.bodies, "name of a body that moves")
     pose = rates = ["x", "z", "theta"]
     if answer.in_space:
         pose = [*"xyz", *(f"quaternion {part}" for part in "wxyz")]
         rates = [*"xyz", *(f"spin {axis}" for axis in "xyz")]
-    yield "coordinate", _texts(pose), "", "displacement from rest along an axis, and rotation"
-    yield "rate", _texts(rates), "", "velocity along an axis, and angular velocity"
+    yield _names("coordinate", pose, "displacement from rest along an axis, and rotation")
+    yield _names("rate", rates, "velocity along an axis, and angular velocity")
     if answer.joints is not None:
-        yield "joint", _texts([joint.name for joint in answer.case.masonry.joints]), "", "name of a joint"
+        yield _names("joint", [joint.name for joint in answer.case.masonry.joints], "name of a joint")
     elif answer.kept_forces is not None:
-        yield "joint", _texts(answer.kept_forces.joints), "", "name of a joint"
+        yield _names("joint", answer.kept_forces.joints, "name of a joint")
 
 
-def _texts(names: Any) -> Any:
-    return np.array([str(name) for name in names], dtype=object)
+def _names(dim: str, names: Iterable[object], text: str) -> tuple[str, Variable]:
+    """A dimension, and the names of the elements along it."""
+    return dim, Variable((dim,), np.array([str(name) for name in names], dtype=object), "", text)
 
 
 def _of_motion(answer: Any) -> Iterator[tuple[str, Variable]]:

@@ -32,6 +32,7 @@ from mjrock.contacts.solref import WITHIN, inertia_of, pair_values
 from mjrock.engine.model import Engine
 from mjrock.engine.rows import inverse_weights
 from mjrock.engine.stepping import fixed_steps
+from mjrock.problem.damping.contacts import Uplift
 from mjrock.result.ledger import StepError
 from mjrock.result.response import Response
 from mjrock.result.rocking import Rocking, RotationHistory, peak_energies, restitution_of, rocking_history
@@ -207,7 +208,7 @@ def scipy_law(rtol: float) -> Solve:
 
 def _as_response(case: mr.Case, contacts: mr.Contacts, t, theta, omega, steps: int) -> Response:  # type: ignore[no-untyped-def]
     _, peaks, impacts = rocking_history(
-        case, RotationHistory(t, theta, omega, 0 * t), (contacts.uplift_rotation(case.block), 0.0)
+        case, RotationHistory(t, theta, omega, 0 * t), Uplift(contacts.uplift_rotation(case.block), 0.0)
     )
     return Response(
         *(case, "stock", t, RigidMotion(case, theta, omega, 0.0), mr.Outcome.TIME_ENDED, ""),

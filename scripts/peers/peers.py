@@ -26,6 +26,7 @@ from tqdm import tqdm
 
 import mjrock as mr
 from mjrock import plotting
+from mjrock.problem.damping.contacts import Uplift
 from mjrock.quantities import Array
 from mjrock.result.rocking import RotationHistory, peak_energies, restitution_of, rocking_history
 from scripts.peers.codes.question import Question
@@ -170,7 +171,7 @@ class Problem:
         if not np.isfinite(theta).all() or np.abs(theta).max() > math.pi / 2:
             return np.zeros(0)
         uplift = self.contacts.uplift_rotation(FIGURE_3)
-        times, sizes, _ = rocking_history(case, RotationHistory(t, theta, omega, 0 * t), (uplift, 0.0))
+        times, sizes, _ = rocking_history(case, RotationHistory(t, theta, omega, 0 * t), Uplift(uplift, 0.0))
         kept: list[tuple[float, float]] = []
         for time, size in zip(times, sizes, strict=True):
             between = np.abs(theta[(t >= kept[-1][0]) & (t <= time)]) if kept else np.zeros(1)

@@ -16,7 +16,7 @@ def test_history_of_a_sampled_theory_is_the_theory(two_sided, one_sided, e):
     for case in (two_sided, one_sided):
         exact = mr.solve_analytical(case, e, output_step=2e-3)
         _, peaks, impacts = rocking_history(
-            case, RotationHistory(exact.t, exact.theta, exact.omega, exact.energy), (1e-3 * case.block.alpha, 0)
+            case, RotationHistory(exact.t, exact.theta, exact.omega, exact.energy), Uplift(1e-3 * case.block.alpha, 0.0)
         )
         n = len(peaks)
         np.testing.assert_allclose(peaks, exact.peaks[:n], rtol=1e-4)
@@ -33,7 +33,7 @@ def test_history_of_a_shaken_theory_is_the_theory(wall, e, side_stop):
     motion = mr.GroundMotion.sine(1.0, 0.7, cycles=6, samples=200)
     case = mr.Case(wall, 0.4 * wall.alpha, 3.0, side_stop=side_stop, motion=motion)
     exact = mr.solve_analytical(case, e, output_step=1e-4)
-    uplift = 2e-4 * wall.alpha, 1e-6
+    uplift = Uplift(2e-4 * wall.alpha, 1e-6)
     _, _, impacts = rocking_history(case, RotationHistory(exact.t, exact.theta, exact.omega, exact.energy), uplift)
     strong = [one for one in exact.impacts if abs(one.omega_after) > 0.03]
     assert len(strong) >= 2
@@ -54,7 +54,9 @@ def test_a_run_that_ends_on_the_way_out_has_its_last_impact(two_sided, e):
         n = np.searchsorted(exact.t, impact.t + later)
         assert abs(exact.theta[n]) > 1e-2 * two_sided.block.alpha
         history = exact.t[:n], exact.theta[:n], exact.omega[:n], exact.energy[:n]
-        _, peaks, impacts = rocking_history(two_sided, RotationHistory(*history), (1e-3 * two_sided.block.alpha, 0))
+        _, peaks, impacts = rocking_history(
+            two_sided, RotationHistory(*history), Uplift(1e-3 * two_sided.block.alpha, 0.0)
+        )
         assert (len(peaks), len(impacts)) == (2, 2)
         assert impacts[1].t == pytest.approx(impact.t, abs=1e-3)
         assert impacts[1].energy_after == pytest.approx(impact.energy_after, rel=1e-3)
@@ -65,7 +67,9 @@ def test_a_wall_that_stops_dead_has_one_impact_and_no_rebound(one_sided):
     t = np.linspace(0, 1, 1001)
     theta = np.maximum(0.05 * np.cos(2 * np.pi * t), 0) * (t < 0.5)
     theta += (t > 0.5) * 1e-5 * np.sin(20 * np.pi * t)
-    _, peaks, impacts = rocking_history(one_sided, RotationHistory(t, theta, np.gradient(theta, t), 0 * t), (1e-3, 0))
+    _, peaks, impacts = rocking_history(
+        one_sided, RotationHistory(t, theta, np.gradient(theta, t), 0 * t), Uplift(1e-3, 0.0)
+    )
     assert len(peaks) == 1
     assert len(impacts) == 1
     assert impacts[0].t == pytest.approx(0.25, abs=2e-3)
@@ -76,9 +80,9 @@ def test_maxima_on_the_side_of_the_stop_are_not_rocking(one_sided, two_sided):
     t = np.linspace(0, 4, 4001)
     theta = 0.05 * np.cos(2 * np.pi * t)
     omega = np.gradient(theta, t)
-    _, peaks, _ = rocking_history(two_sided, RotationHistory(t, theta, omega, 0 * t), (1e-3, 0))
+    _, peaks, _ = rocking_history(two_sided, RotationHistory(t, theta, omega, 0 * t), Uplift(1e-3, 0.0))
     assert len(peaks) == 8
-    _, peaks, _ = rocking_history(one_sided, RotationHistory(t, theta, omega, 0 * t), (1e-3, 0))
+    _, peaks, _ = rocking_history(one_sided, RotationHistory(t, theta, omega, 0 * t), Uplift(1e-3, 0.0))
     assert len(peaks) == 4
 
 
@@ -96,7 +100,7 @@ def test_a_release_that_is_not_quite_still_is_one_peak(two_sided, e):
         omega = exact.omega.copy()
         omega[0] = first
         _, peaks, impacts = rocking_history(
-            two_sided, RotationHistory(exact.t, exact.theta, omega, exact.energy), (1e-4, 0)
+            two_sided, RotationHistory(exact.t, exact.theta, omega, exact.energy), Uplift(1e-4, 0.0)
         )
         np.testing.assert_allclose(peaks, exact.peaks[: len(peaks)], rtol=1e-4)
         assert impacts[0].restitution == pytest.approx(e.base, rel=1e-3)

@@ -48,7 +48,7 @@ def measured(masonry):
 def test_all_ways_agree(name, many, monkeypatch):
     masonry = WALLS[name]()
     full = measured(masonry)
-    monkeypatch.setattr(linear, "FEW", 0)
+    monkeypatch.setattr(linear, "SOLVED_IN_FULL", 0)
     monkeypatch.setattr(linear, "MANY_UNKNOWNS", many)
     sparse = measured(masonry)
     np.testing.assert_allclose(sparse[0], full[0], rtol=0, atol=1e-9 * np.abs(full[0]).max())
@@ -62,7 +62,7 @@ def test_motions_that_are_held_twice_or_by_nothing(monkeypatch):
     grip = csr_array([[1.0, 1.0, 0.0, 0.0]] * 2)
     answers = []
     for few, many in ((300, 20_000), (0, 20_000), (0, 0)):
-        monkeypatch.setattr(linear, "FEW", few)
+        monkeypatch.setattr(linear, "SOLVED_IN_FULL", few)
         monkeypatch.setattr(linear, "MANY_UNKNOWNS", many)
         for first in (0.0, -4.0):
             value, mode = linear.lowest_mode(csr_array(np.diag([2.0, 3.0, first, 5.0])), 4.0)
@@ -86,6 +86,6 @@ def test_what_slides_on_joints_without_friction(monkeypatch):
         2.0, 1.0, (0.5, 0.25), friction=lambda joint: 0.0 if abs(joint.middle[1] - 0.25) < 1e-6 else 0.6
     )
     full = slippery(masonry)
-    monkeypatch.setattr(linear, "FEW", 0)
+    monkeypatch.setattr(linear, "SOLVED_IN_FULL", 0)
     assert slippery(masonry) == full
     assert 0 < len(full[1]) < len(masonry.joints)
