@@ -12,16 +12,16 @@ from .checks import PACKAGE
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command. Returns the exit status: 2 for what the user can mend."""
-    made = argparse.ArgumentParser(f"python -m {PACKAGE}", description="Contacts of a MuJoCo model in N/m and N s/m.")
-    commands = made.add_subparsers(metavar="COMMAND", required=True)
+    parser = argparse.ArgumentParser(f"python -m {PACKAGE}", description="Contacts of a MuJoCo model in N/m and N s/m.")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
     for name, module, line in (
         ("inspect", command, "what they are, the worst first"),
         ("measure", measure_command, "drop, press and push a contact of two geoms, and compare"),
     ):
-        one = commands.add_parser(name, help=line)
-        module.add_arguments(one)
-        one.set_defaults(answer=module.answer)
-    args = made.parse_args(argv)
+        command_parser = commands.add_parser(name, help=line)
+        module.add_arguments(command_parser)
+        command_parser.set_defaults(answer=module.answer)
+    args = parser.parse_args(argv)
     try:
         text = args.answer(args)
     except (ValueError, TypeError, OSError, ImportError) as error:

@@ -240,7 +240,7 @@ class Declaration(NamedTuple):
     @classmethod
     def from_hint(cls, hint: object) -> Declaration | None:
         """What an annotation declares; None without a range."""
-        within = next((one for one in getattr(hint, "__metadata__", ()) if isinstance(one, Within)), None)
+        within = next((note for note in getattr(hint, "__metadata__", ()) if isinstance(note, Within)), None)
         if within is None:
             return None
         kinds = alternatives(hint)
@@ -269,8 +269,8 @@ class Declaration(NamedTuple):
 def declared(kind: Callable[..., object]) -> dict[str, Declaration]:
     """What each field of a class, or argument of a function, declares that has a range."""
     hints = get_type_hints(kind, include_extras=True)
-    found = {name: Declaration.from_hint(hint) for name, hint in hints.items()}
-    return {name: one for name, one in found.items() if one is not None}
+    declarations = {name: Declaration.from_hint(hint) for name, hint in hints.items()}
+    return {name: declaration for name, declaration in declarations.items() if declaration is not None}
 
 
 def keep_declared(instance: object, owner: str = "", but: Collection[str] = ()) -> None:
@@ -285,10 +285,10 @@ def keep_declared(instance: object, owner: str = "", but: Collection[str] = ()) 
         TypeError, ValueError: with the name, the value and the range, as `require_within`.
     """
     kind: Callable[..., object] = type(instance)
-    for field, one in declared(kind).items():
+    for field, declaration in declared(kind).items():
         if field not in but:
-            name = one.within.name or (f"{field} of the {owner}" if owner else field)
-            keep(instance, **{field: one.checked(name, getattr(instance, field))})
+            name = declaration.within.name or (f"{field} of the {owner}" if owner else field)
+            keep(instance, **{field: declaration.checked(name, getattr(instance, field))})
 
 
 def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
@@ -297,14 +297,14 @@ def within_ranges(function: Callable[P, Result]) -> Callable[P, Result]:
     parameters = inspect.signature(function)
 
     @wraps(function)
-    def with_checked(*given: P.args, **options: P.kwargs) -> Result:
+    def with_checked(*arguments: P.args, **options: P.kwargs) -> Result:
         try:
-            bound = parameters.bind(*given, **options)
+            bound = parameters.bind(*arguments, **options)
         except TypeError:
-            return function(*given, **options)  # whose error names what is missing or too much
-        for name, one in declared(function).items():
+            return function(*arguments, **options)  # whose error names what is missing or too much
+        for name, declaration in declared(function).items():
             if name in bound.arguments:
-                bound.arguments[name] = one.checked(one.within.name or name, bound.arguments[name])
+                bound.arguments[name] = declaration.checked(declaration.within.name or name, bound.arguments[name])
         return function(*bound.args, **bound.kwargs)
 
     return with_checked
@@ -346,10 +346,10 @@ def listed(name: str, values: Iterable[Element]) -> list[Element]:
     Raises:
         ValueError: if there are more than MOST_LISTED, as where they have no end.
     """
-    found = list(islice(values, MOST_LISTED + 1))
-    if len(found) > MOST_LISTED:
+    taken = list(islice(values, MOST_LISTED + 1))
+    if len(taken) > MOST_LISTED:
         raise ValueError(f"{name} has more values than the largest valid number, {MOST_LISTED}")
-    return found
+    return taken
 
 
 def require_flag(name: str, value: object) -> bool:
@@ -396,20 +396,20 @@ def require_plain(name: str, values: object, takes: str, kinds: str) -> NDArray[
         ValueError: if they are ragged, masked, or more than MOST_SAMPLES.
     """
     try:
-        given = np.asarray(values)
+        array = np.asarray(values)
     except ValueError:
         raise ValueError(f"{name} = {shown(values)} has rows of different lengths; it takes {takes}") from None
     except MemoryError:
         raise ValueError(f"{name} = {shown(values)} has more values than memory holds; it takes {takes}") from None
     except Exception as error:  # of an object that cannot become an array
         raise TypeError(f"{name} = {shown(values)} cannot be read ({error!r}); it takes {takes}") from None
-    if given.dtype.kind not in kinds or ("b" not in kinds and _holds_truth(values)):
+    if array.dtype.kind not in kinds or ("b" not in kinds and _holds_truth(values)):
         held = "values of these kinds" if "b" in kinds else "real numbers"
         raise TypeError(f"{name} = {shown(values)} does not hold {held} alone; it takes {takes}")
     if _is_masked(values):
         raise ValueError(f"{name} has masked values; it takes {takes}")
-    require_size(f"the size of {name}", given.size, "give fewer values")
-    return given
+    require_size(f"the size of {name}", array.size, "give fewer values")
+    return array
 
 
 def require_reals(name: str, values: object, takes: str) -> Array:

@@ -106,9 +106,9 @@ def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, mo
 
 def rows_of_page(rows: Sequence[Sequence[str]]) -> list[list[str]]:
     """Rows with the columns of a page. Those that differ in their second geom alone are one, with their number."""
-    kept = [list(itertools.compress(row, COLUMNS_OF_PAGE)) for row in rows]
+    columns = [list(itertools.compress(row, COLUMNS_OF_PAGE)) for row in rows]
     groups: dict[tuple[str, ...], list[list[str]]] = {}
-    for row in kept:
+    for row in columns:
         groups.setdefault((row[0], *row[2:]), []).append(row)
     return [
         [first[0], first[1] + (f" and {len(others)} like it" if others else ""), *first[2:]]
@@ -137,11 +137,11 @@ def values(contact: InspectedContact, speed: float) -> list[str]:
 
 def flex_report(model: mujoco.MjModel) -> str:
     """A line for each flex and geom that can meet, and what the options of the model do; empty without any."""
-    found = [str(contact) for contact in inspect_flexes(model)]
-    if not found:
+    contacts = [str(contact) for contact in inspect_flexes(model)]
+    if not contacts:
         return ""
     remarks = [f"For all of them: {sentence}." for sentence in model_caveats(model)]
-    return "\n".join(["", "Contacts of flexes, at zero penetration:", *found, *remarks])
+    return "\n".join(["", "Contacts of flexes, at zero penetration:", *contacts, *remarks])
 
 
 def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:
@@ -179,7 +179,7 @@ def answer(args: argparse.Namespace) -> str:
     keyframe = keyframe_argument(args.keyframe)
     model = load(args.model)
     require_names(model, [*args.geom, *args.body, *(args.pair or ())])
-    found = inspect_contacts(
+    contacts = inspect_contacts(
         model,
         candidates=not args.pairs,
         contacts=args.contacts,
@@ -187,7 +187,7 @@ def answer(args: argparse.Namespace) -> str:
         load=args.load,
         chosen=lambda pair: has_names(pair, args.geom, args.body, args.pair),
     )
-    chosen = worst_first(found)
+    chosen = worst_first(contacts)
     if args.csv is not None:
         header = ["geom1", "geom2", *HEADER[2:]]
         rows = [[*values(contact, args.speed), "; ".join(contact.notes)] for contact in chosen]

@@ -480,8 +480,8 @@ class StiffnessChange(NamedTuple):
 def changes_message(changed: Collection[StiffnessChange]) -> str:
     """Contacts that the options change, the one that changes most first, as a sentence."""
     changes = []
-    for each in sorted(changed, key=lambda one: -abs(math.log(one.stiffness[1] / one.stiffness[0]))):
-        changes.append("{} ({:.3g} to {:.3g} N/m)".format(" on ".join(each.pair.labels), *each.stiffness))
+    for change in sorted(changed, key=lambda other: -abs(math.log(other.stiffness[1] / other.stiffness[0]))):
+        changes.append("{} ({:.3g} to {:.3g} N/m)".format(" on ".join(change.pair.labels), *change.stiffness))
     return (
         f"the options that the contact needs change the stiffness of {len(changes)} other contacts of the model under "
         f"the weight: {named(changes)}; contacts_for gives them numbers of their own, or keep_others=True writes pairs "

@@ -143,16 +143,16 @@ def _strain(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
 
 def _actuators(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Array, Array]:
     """Stiffness and damping of every actuator, from its force at two lengths and at two speeds; shape (n,)."""
-    kept, found = np.array(data.actuator_force), []
+    force, slopes = np.array(data.actuator_force), []
     for name in ("actuator_length", "actuator_velocity"):
         values = getattr(data, name)
         before = np.array(values)
         values += ACTUATOR_PROBE
         mujoco.mj_fwdActuation(model, data)
-        found.append(np.maximum((kept - data.actuator_force) / ACTUATOR_PROBE, 0.0))
+        slopes.append(np.maximum((force - data.actuator_force) / ACTUATOR_PROBE, 0.0))
         values[:] = before
     mujoco.mj_fwdActuation(model, data)
-    return found[0], found[1]
+    return slopes[0], slopes[1]
 
 
 ACTUATOR_PROBE = 1e-6

@@ -284,22 +284,22 @@ class GeomPair:
 
     def meets_edges(self, data: mujoco.MjData, away: Array) -> bool:
         """Whether a line meets edges or corners of all boxes, cylinders and meshes among the two geoms."""
-        model, found = self.model, []
+        model, cosines = self.model, []
         for geom in self.geoms:
             kind, along = model.geom_type[geom], np.abs(data.geom_xmat[geom].reshape(3, 3).T @ away)
             if kind == mujoco.mjtGeom.mjGEOM_PLANE or kind in NOT_CONVEX:
                 return False
             if kind == mujoco.mjtGeom.mjGEOM_BOX:
-                found.append(along.max())
+                cosines.append(along.max())
             elif kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
-                found.append(max(along[2], float(np.hypot(*along[:2]))))
+                cosines.append(max(along[2], float(np.hypot(*along[:2]))))
             elif kind == mujoco.mjtGeom.mjGEOM_MESH:
                 mesh = int(model.geom_dataid[geom])
                 first = int(model.mesh_polyadr[mesh])
                 normals = model.mesh_polynormal[first : first + int(model.mesh_polynum[mesh])]
                 local = data.geom_xmat[geom].reshape(3, 3).T @ away
-                found.append(float(np.abs(normals @ local).max(initial=0)))
-        return bool(found) and max(found) < FACING
+                cosines.append(float(np.abs(normals @ local).max(initial=0)))
+        return bool(cosines) and max(cosines) < FACING
 
     def _shortest(self, data: mujoco.MjData) -> tuple[float, Array | None]:
         """Distance of the geoms and their nearest points [m]; zero and None where MuJoCo finds none."""

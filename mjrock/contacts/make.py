@@ -291,16 +291,16 @@ def _matching(model: mujoco.MjModel, argument: str, value: object) -> list[int]:
     if not isinstance(value, str) or not _is_wild(value):
         return [geom_id(model, argument, value)]
     geoms = names_of_objects(model, GEOM)
-    found = [i for i, name in enumerate(geoms) if name and fnmatchcase(name, value)]
-    if not found:
+    numbers = [i for i, name in enumerate(geoms) if name and fnmatchcase(name, value)]
+    if not numbers:
         alike = (i for i, name in enumerate(names_of_objects(model, BODY)) if fnmatchcase(name, value))
-        found = [int(model.body_geomadr[i]) for i in alike if model.body_geomnum[i] == 1]
-    if not found:
+        numbers = [int(model.body_geomadr[i]) for i in alike if model.body_geomnum[i] == 1]
+    if not numbers:
         known = named([name for name in geoms if name]) or "none"
         raise ValueError(
             f"{argument} = {shown(value)} matches no geom, nor a body with a single one; geoms are: {known}"
         )
-    return found
+    return numbers
 
 
 @dataclass(frozen=True)

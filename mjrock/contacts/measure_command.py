@@ -27,7 +27,7 @@ def answer(args: argparse.Namespace) -> str:
         ImportError: for a picture without Matplotlib.
     """
     keyframe = keyframe_argument(args.keyframe)
-    found = measure(load(args.model), *args.geoms, speed=args.speed, duration=args.duration, keyframe=keyframe)
+    measurement = measure(load(args.model), *args.geoms, speed=args.speed, duration=args.duration, keyframe=keyframe)
     if args.picture is not None:
-        found.draw().savefig(args.picture, dpi=150)
-    return str(found)
+        measurement.draw().savefig(args.picture, dpi=150)
+    return str(measurement)

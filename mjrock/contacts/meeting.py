@@ -303,11 +303,11 @@ class Pose:
         """The pose in which geoms part along a direction, in the world's frame, shape (3,); itself for None."""
         if normal is None:
             return self
-        given = require_array("normal", normal, (3,))
-        if not (size := float(np.linalg.norm(given))) > 0:
+        vector = require_array("normal", normal, (3,))
+        if not (size := float(np.linalg.norm(vector))) > 0:
             raise ValueError(f"normal = {shown(normal)} has no direction; give a vector that is not zero")
         other = copy.copy(self)
-        other.normal, other._groups = given / size, {}
+        other.normal, other._groups = vector / size, {}
         return other
 
     def group(self, pair: GeomPair) -> BodyPair:

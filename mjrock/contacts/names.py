@@ -11,5 +11,5 @@ IMPORTED = re.compile(r"^    from \.(\w[\w.]*) import (\([^)]*\)|.+)", re.MULTIL
 
 def homes(init: str) -> dict[str, str]:
     """The module of each public name of a package, from the file of its `__init__`."""
-    found = IMPORTED.findall(Path(init).read_text("utf-8"))
-    return {name: module for module, names in found for name in re.findall(r"\w+", names)}
+    imports = IMPORTED.findall(Path(init).read_text("utf-8"))
+    return {name: module for module, names in imports for name in re.findall(r"\w+", names)}

@@ -110,11 +110,11 @@ def _root(function: Callable[[float], tuple[float, float]], value: float, high: 
     """
     low, x = 0.0, min(value / math.pi, high)
     for _ in range(200):
-        found, slope = function(x)
-        if found == value:
+        reached, slope = function(x)
+        if reached == value:
             return x
-        low, high = (x, high) if found < value else (low, x)
-        new = x - (found - value) / slope if slope > 0 else -1.0
+        low, high = (x, high) if reached < value else (low, x)
+        new = x - (reached - value) / slope if slope > 0 else -1.0
         if not low < new < high:
             new = 0.5 * (low + high)
         if abs(new - x) <= 1e-16 * abs(x):

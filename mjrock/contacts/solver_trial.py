@@ -48,13 +48,13 @@ def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
     trial = SolverTrial(pose, landed)
     own, cap, searches = trial.own, max(trial.own[0], MOST_ITERATIONS), max(trial.own[1], LINE_SEARCHES)
     try:
-        found = trial.run(cap, searches)
+        result = trial.run(cap, searches)
     except mujoco.FatalError:  # the memory of the model is too small for the contacts
-        found = TrialResult()
-    if not found.carried:
+        result = TrialResult()
+    if not result.carried:
         return SolverNeed(*own, tried=False)
-    if found.most < cap:
-        return SolverNeed(*own) if found.enough else SolverNeed(max(2 * found.most, own[0]), searches)
+    if result.most < cap:
+        return SolverNeed(*own) if result.enough else SolverNeed(max(2 * result.most, own[0]), searches)
     option = trial.model.opt
     full = float(option.impratio) if trial.contacts.has_friction else 1.0
     for power in range(math.ceil(math.log10(full)) - 1, -1, -1):

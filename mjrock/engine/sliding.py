@@ -104,9 +104,9 @@ def update_direction(
 
     The leapfrog keeps the velocity of half a step before. The slip may turn with the motion in between.
     """
-    kept = relative_velocity(places, i, meets, frames, memory.velocity)
+    before = relative_velocity(places, i, meets, frames, memory.velocity)
     ahead = scaled(0.5 * memory.options[TIMESTEP], relative_velocity(places, i, meets, frames, memory.acceleration))
-    return set_direction(sliding, i, slip_of(meets.normal, plus(kept, ahead)).direction)
+    return set_direction(sliding, i, slip_of(meets.normal, plus(before, ahead)).direction)
 
 
 @inlined

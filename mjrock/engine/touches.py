@@ -154,8 +154,8 @@ def step_to_break(ties: Ties, openings: Openings, now: float, short: float) -> f
         if ties.limit[i] == math.inf or ties.reach[i] == math.inf:
             continue
         j = contacts + i
-        left = ties.limit[i] - ties.reach[i] + openings.value[j]
+        remaining = ties.limit[i] - ties.reach[i] + openings.value[j]
         g1, g2 = openings.rate[j], openings.linear[j] + openings.swept[j]
-        if left + now * (g1 + 0.5 * now * g2) <= 0:
-            first = min(first, 2 * left / (math.sqrt(max(0.0, g1 * g1 - 2 * left * g2)) - g1))
+        if remaining + now * (g1 + 0.5 * now * g2) <= 0:
+            first = min(first, 2 * remaining / (math.sqrt(max(0.0, g1 * g1 - 2 * remaining * g2)) - g1))
     return 0.0 if first == math.inf else first + 0.5 * short

@@ -106,9 +106,10 @@ class BodyMotion:
         Of the fixed bodies that stay where they are, it is those with the lowest top, unless a free body is below it.
         """
         solids = self.case.rest_geometry.solids
-        ends = [(corners.min(axis=0), corners.max(axis=0)) for corners in (one.corners + one.rest for one in solids)]
-        free = np.array([end for end, one in zip(ends, solids, strict=True) if not one.fixed])
-        stays = [one.fixed and self.case.support_of(one.block) is None for one in solids]
+        corners = [solid.corners + solid.rest for solid in solids]
+        ends = [(places.min(axis=0), places.max(axis=0)) for places in corners]
+        free = np.array([end for end, solid in zip(ends, solids, strict=True) if not solid.fixed])
+        stays = [solid.fixed and self.case.support_of(solid.block) is None for solid in solids]
         tops = np.where(stays, [float(high[2]) for _, high in ends], np.inf)
         low, high = free[:, 0].min(axis=0), free[:, 1].max(axis=0)
         return np.asarray(tops <= min(low[2], tops.min()) + SAME_LEVEL * float((high - low).max()))
@@ -157,9 +158,9 @@ class BodyMotion:
         """Middles [m] and axes of joints, which move with the block below, shapes (n, j, d) and (n, j, d, d)."""
         d, on_body = frames.middle.shape[1], frames.below >= 0
         middle, axes = (np.repeat(part[None], len(self.t), axis=0) for part in (frames.middle, frames.axes))
-        of = frames.below[on_body]
-        turned = rotated(frames.from_body[on_body], self.pose[:, of])
-        middle[:, on_body] = frames.rest[of] + self.pose[:, of, :d] + turned[:, :, 0]
+        block_below = frames.below[on_body]
+        turned = rotated(frames.from_body[on_body], self.pose[:, block_below])
+        middle[:, on_body] = frames.rest[block_below] + self.pose[:, block_below, :d] + turned[:, :, 0]
         axes[:, on_body] = turned[:, :, 1:]
         for support in self.case.supports:
             middle[:, frames.fixed == frames.blocks.index(support.block)] += support.at(self.t)[:, None]
@@ -170,8 +171,8 @@ def frames_at(t: Array, fps: float) -> Integers:
     """Numbers of the first sample in each frame, and of the last sample. Their times differ as numbers of 32 bits."""
     rate = require_within("fps", fps, 1.0, 1e4, "1/s")
     first = np.unique(np.floor((t - t[0]) * rate * (1 + 1e-12)), return_index=True)[1]
-    kept = np.unique(np.append(first, len(t) - 1))
-    return np.asarray(kept[np.unique(t[kept].astype(np.float32), return_index=True)[1]])
+    numbers = np.unique(np.append(first, len(t) - 1))
+    return np.asarray(numbers[np.unique(t[numbers].astype(np.float32), return_index=True)[1]])
 
 
 def bodies_of(moving: BodyMotion, velocity: Array) -> list[Body]:

@@ -160,7 +160,8 @@ class Comparison(NotebookPicture):
 
     def rows(self) -> list[dict[str, float]]:
         """One row an impact, for a table or a CSV file; names carry their units."""
-        names = [f"{one.name}, {solver} [{one.unit}]" for one in MEASURES_OF_IMPACTS for solver in self._labels]
+        labels = self._labels
+        names = [f"{each.name}, {solver} [{each.unit}]" for each in MEASURES_OF_IMPACTS for solver in labels]
         values = self._measured.reshape(-1, len(names)).tolist()
         return [{"impact": i + 1} | dict(zip(names, row, strict=True)) for i, row in enumerate(values)]
 
@@ -235,17 +236,17 @@ def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least
     Two impacts are a pair where each is the nearest to the other in time, `within` [s] of it. Those are left out before
     which the wall has less energy than `least` [J]. All are in the order of their times.
     """
-    kept = [[i for i, impact in enumerate(side) if impact.energy_before >= least] for side in (left, right)]
-    a, b = (np.array([side[i].t for i in own]) for side, own in zip((left, right), kept, strict=True))
+    counted = [[i for i, impact in enumerate(side) if impact.energy_before >= least] for side in (left, right)]
+    a, b = (np.array([side[i].t for i in own]) for side, own in zip((left, right), counted, strict=True))
     pairs, unpaired = [], set(range(len(b)))
     for i, t in enumerate(a):
         j = int(np.abs(b - t).argmin()) if len(b) else -1
         if j >= 0 and abs(b[j] - t) <= within and int(np.abs(a - b[j]).argmin()) == i:
-            pairs.append((t, kept[0][i], kept[1][j]))
+            pairs.append((t, counted[0][i], counted[1][j]))
             unpaired.discard(j)
         else:
-            pairs.append((t, kept[0][i], -1))
-    pairs += [(b[j], -1, kept[1][j]) for j in unpaired]
+            pairs.append((t, counted[0][i], -1))
+    pairs += [(b[j], -1, counted[1][j]) for j in unpaired]
     return np.array([numbers for _, *numbers in sorted(pairs)], dtype=np.int64).reshape(-1, 2)
 
 

@@ -128,8 +128,8 @@ def _fallen_from_faces(
     case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, joints: JointRecord, fallen: dict[str, float]
 ) -> dict[str, float]:
     """When each block fell [s], where one that has slid off its joints counts as fallen, and one that ended the run."""
-    left = left_joints(case.masonry, t, joints.off)
-    both = {name: min(left.get(name, np.inf), fallen.get(name, np.inf)) for name in left | fallen}
+    slid_off = left_joints(case.masonry, t, joints.off)
+    both = {name: min(slid_off.get(name, np.inf), fallen.get(name, np.inf)) for name in slid_off | fallen}
     early = t[-1] < case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to the duration
     return in_order(both) or (_stopped_by(scene, motion.pose[-1], float(t[-1])) if early else {})
 

@@ -41,15 +41,15 @@ def variables_of(answer: Any) -> dict[str, Variable]:
 
     They are the arrays of the response themselves, and not copies, where it has them as arrays.
     """
-    found = dict[str, Variable]()
+    variables = dict[str, Variable]()
     for name, variable in (
         *_coordinates(answer),
         *_of_motion(answer),
         *_of_forces(answer.kept_forces),
         *_of_ledger(answer.ledger),
     ):
-        found[_unused(re.sub(r"[/\0]", "_", name), found)] = variable
-    return found
+        variables[_unused(re.sub(r"[/\0]", "_", name), variables)] = variable
+    return variables
 
 
 def attributes_of(answer: Any) -> dict[str, str]:

@@ -221,9 +221,9 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
     nv, deepest = engine.scene.freedom.nv, None
     with Bar("plain MuJoCo", "s", steps * h) as bar:
         for n in range(steps + 1):
-            t, kept = n * h, n % stride == 0 or n == steps
+            t, is_sample = n * h, n % stride == 0 or n == steps
             shaken = engine.drive(course, t)
-            pose = engine.pose() if kept else None
+            pose = engine.pose() if is_sample else None
             before[:] = data.qvel
             mujoco.mj_step(engine.model, data)
             np.multiply(before + data.qvel, 0.5, out=mean)

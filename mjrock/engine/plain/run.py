@@ -162,7 +162,8 @@ class PlainRun:
     @cached_property
     def overlap(self) -> tuple[float, str]:
         """The largest volume that two solids have in common, over that of the smaller one [-], and where, in words."""
-        shares = [(one.share, one) for one in sorted(self.at.deepest, key=lambda one: -one.depth)[:OVERLAPS_COMPUTED]]
+        deepest = sorted(self.at.deepest, key=lambda overlap: -overlap.depth)[:OVERLAPS_COMPUTED]
+        shares = [(overlap.share, overlap) for overlap in deepest]
         if not shares:
             return 0.0, ""
         share, worst = max(shares, key=lambda pair: pair[0])
