@@ -27,7 +27,7 @@ Task = Callable[[Payload, Send], None]
 """A function that answers a request in parts, each of which it sends."""
 MOST_BUSY, MOST_IDLE = 4, 2
 """Most processes at work at once, and most that wait for work."""
-POLL_INTERVAL = 0.1
+CHILD_POLL_INTERVAL = 0.1
 """Time between two checks whether somebody still waits for the answer [s]."""
 
 
@@ -108,7 +108,7 @@ class Worker:
         try:
             self.pipe.send((name, request))
             while True:
-                while not self.pipe.poll(POLL_INTERVAL):
+                while not self.pipe.poll(CHILD_POLL_INTERVAL):
                     if left():
                         raise ConnectionAbortedError("nobody waits for the answer")
                     if time.monotonic() > end:
