@@ -39,14 +39,14 @@ def coloured(figure, ax, places):
     """Whether the picture has the colour of forces at places [m] of an Axes of the plane or of space."""
     file = io.BytesIO()
     figure.savefig(file, dpi=200, format="png")
-    pixels = np.asarray(Image.open(file).convert("RGB")).astype(int)
+    pixels = np.asarray(Image.open(file).convert("RGB"))
     places = np.asarray(places)
     if places.shape[1] == 3:
         places = np.column_stack(proj_transform(*places.T, ax.M)[:2])
     columns, rows = (ax.transData.transform(places) / figure.dpi * 200).T
-    near = np.abs(pixels - 255 * np.array(to_rgb(FORCE))).max(axis=-1) < 40
-    centres = np.round([columns, len(near) - rows]).astype(int).T
-    return [bool(near[y - 3 : y + 3, x - 2 : x + 3].any()) for x, y in centres]
+    centres = np.round([columns, len(pixels) - rows]).astype(int).T
+    apart = [np.abs(pixels[y - 3 : y + 3, x - 2 : x + 3] - 255 * np.array(to_rgb(FORCE))) for x, y in centres]
+    return [bool((near.max(axis=-1) < 40).any()) for near in apart]
 
 
 def along(start, end, count=9):

@@ -20,19 +20,20 @@ ROOT = Path(mr.__file__).parent
 
 def templates_in(path):
     """The templates of all messages that a module makes, also those that stand under a name first."""
-    named = {}
+    templates, named = [], {}
+    if not re.search(r"\b(?:Message|refusal)\(", path.read_text("utf-8")):
+        return
+    for node in nodes(path):
+        if isinstance(node, ast.Call):
+            name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            at = {"Message": 0, "refusal": 1}.get(name)
+            templates += [] if at is None else node.args[at : at + 1]
     for node in nodes(path):
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
             for target in node.targets:
                 named.setdefault(ast.unparse(target), []).append(node.value.value)
-    for node in nodes(path):
-        if not isinstance(node, ast.Call):
-            continue
-        name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
-        at = {"Message": 0, "refusal": 1}.get(name)
-        if at is not None and len(node.args) > at:
-            given = node.args[at]
-            yield from [given.value] if isinstance(given, ast.Constant) else named.get(ast.unparse(given), [])
+    for given in templates:
+        yield from [given.value] if isinstance(given, ast.Constant) else named.get(ast.unparse(given), [])
 
 
 def fields(text):

@@ -152,7 +152,7 @@ def test_damping_in_proportion_to_mass_does_not_shift_it(mass_damping, few_piece
 
 
 @pytest.mark.parametrize(("vertical", "mass"), [slow((5000.0, 0.0)), (0.0, 500.0)])
-def test_a_load_that_stays_and_a_mass_have_their_part(vertical, mass):
+def test_a_load_that_stays_and_a_mass_have_their_part(vertical, mass, few_pieces):
     """V = W (h cos + b sin) + P (2h cos + b sin) about the toe, over x = h sin + b (1 - cos); a mass weighs, too."""
     effect = mr.AddedMass(mass, 2 * H, block=1) if mass else mr.Load(vertical, 2 * H, block="panel")
     push = mr.push(panel(2.0, k_n=1e10), 1, 0.03, effects=effect)
