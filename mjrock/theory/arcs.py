@@ -25,14 +25,13 @@ from .law import (
     SLACK,
     TAUT,
     YIELDING,
-    Push,
+    Loads,
     RockingLaw,
     Toe,
     WallTies,
     acceleration,
     acceleration_by_ties,
     nystroem,
-    pull_of,
     pushed,
 )
 
@@ -49,23 +48,23 @@ CHUNK = 4096
 
 
 @inlined
-def change_of(toe: Toe, ties: WallTies, i: int, theta: float) -> int:
-    """What tie i does at a rotation, other than what it does in this step; -1 where that is the same.
+def new_state(toe: Toe, ties: WallTies, i: int, theta: float) -> int:
+    """The state that tie i takes at a rotation, or -1 where it keeps the one that it has.
 
     A tie that yields goes on until the wall turns or it breaks, and one that has broken stays so.
     """
-    if ties.doing[i] == BROKEN:
+    if ties.state[i] == BROKEN:
         return -1
-    tie = pull_of(ties, i)
+    tie = ties.pulls[i]
     elastic = pulled(tie, theta, toe.side)[0] - ties.plastic[i]
-    if ties.doing[i] == SLACK:
+    if ties.state[i] == SLACK:
         return TAUT if elastic > 0 else -1
-    if ties.doing[i] == TAUT:
+    if ties.state[i] == TAUT:
         if elastic < 0:
             return SLACK
         if elastic * tie.stiffness > tie.strength:
             return YIELDING
-    if ties.doing[i] == YIELDING:
+    if ties.state[i] == YIELDING:
         drawn = pulled(tie, theta, toe.side)[0] - tie.strength / tie.stiffness
         if drawn > tie.ultimate:
             return BROKEN
@@ -73,23 +72,23 @@ def change_of(toe: Toe, ties: WallTies, i: int, theta: float) -> int:
 
 
 @inlined
-def any_change(toe: Toe, ties: WallTies, theta: float) -> bool:
-    """Whether any tie does something else at a rotation."""
-    for i in range(len(ties.doing)):  # noqa: SIM110, numba knows no any()
-        if change_of(toe, ties, i, theta) >= 0:
+def any_change(loads: Loads, theta: float) -> bool:
+    """Whether any tie changes its state at a rotation."""
+    for i in range(len(loads.ties.state)):  # noqa: SIM110, numba knows no any()
+        if new_state(loads.toe, loads.ties, i, theta) >= 0:
             return True
     return False
 
 
 @inlined
-def until_change(toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float) -> float:
-    """The time within a step after which a tie first does something else, from just after it; `h` where none does."""
-    if len(ties.doing) == 0 or not any_change(toe, ties, nystroem(toe, ties, push, theta, omega, h)[0]):
+def until_change(loads: Loads, theta: float, omega: float, h: float) -> float:
+    """The time within a step after which a tie first changes its state, from just after it; `h` where none does."""
+    if len(loads.ties.state) == 0 or not any_change(loads, nystroem(loads, theta, omega, h)[0]):
         return h
     low, high = 0.0, h
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if any_change(toe, ties, nystroem(toe, ties, push, theta, omega, middle)[0]):
+        if any_change(loads, nystroem(loads, theta, omega, middle)[0]):
             high = middle
         else:
             low = middle
@@ -97,16 +96,16 @@ def until_change(toe: Toe, ties: WallTies, push: Push, theta: float, omega: floa
 
 
 @inlined
-def take_changes(toe: Toe, ties: WallTies, theta: float, turned: bool) -> None:
-    """Let every tie do what it does from here on. One that yields has yielded for good when the wall turns."""
-    for i in range(len(ties.doing)):
-        change = change_of(toe, ties, i, theta)
-        if change >= 0:
-            ties.doing[i] = change
-        elif ties.doing[i] == YIELDING and turned:
-            tie = pull_of(ties, i)
+def update_states(toe: Toe, ties: WallTies, theta: float, turned: bool) -> None:
+    """Bring the states of all ties up to date. One that yields has yielded for good when the wall turns."""
+    for i in range(len(ties.state)):
+        state = new_state(toe, ties, i, theta)
+        if state >= 0:
+            ties.state[i] = state
+        elif ties.state[i] == YIELDING and turned:
+            tie = ties.pulls[i]
             ties.plastic[i] = pulled(tie, theta, toe.side)[0] - tie.strength / tie.stiffness
-            ties.doing[i] = TAUT
+            ties.state[i] = TAUT
 
 
 class Rules(NamedTuple):
@@ -162,12 +161,12 @@ class ArcRoom(NamedTuple):
 
 
 @inlined
-def free_moment(toe: Toe, held: float, x: float, z: float) -> float:
+def free_moment(toe: Toe, by_ties: float, x: float, z: float) -> float:
     """Moment that holds a resting wall down, over its inertia [1/s2]; a negative one lifts it towards the toe.
 
-    `held` is that of its ties, likewise.
+    `by_ties` is that of its ties, likewise.
     """
-    return toe.P + held + toe.Wd * z + toe.side * toe.Wz * x
+    return toe.P + by_ties + toe.Wd * z + toe.side * toe.Wz * x
 
 
 @inlined
@@ -177,14 +176,14 @@ def uplift(law: RockingLaw, one_sided: bool, t: float, duration: float) -> tuple
     outer, inner = -acceleration_by_ties(law.outer, law.ties, 0.0), acceleration_by_ties(law.inner, law.ties, 0.0)
     while t < duration:
         push, end = pushed(law.x, law.z, t)
-        for toe, held in ((law.outer, outer), (law.inner, inner)):
+        for toe, by_ties in ((law.outer, outer), (law.inner, inner)):
             if toe.side < 0 and one_sided:
                 continue
-            now = free_moment(toe, held, push.x, push.z)
+            now = free_moment(toe, by_ties, push.x, push.z)
             if now < (-1e-9 * toe.P if t == begun else 0.0):
                 return t, toe.side
             span = min(end, duration) - t
-            then = free_moment(toe, held, push.x + push.x_rate * span, push.z + push.z_rate * span)
+            then = free_moment(toe, by_ties, push.x + push.x_rate * span, push.z + push.z_rate * span)
             if then < 0 <= now:
                 return t + span * now / (now - then), toe.side
         t = end
@@ -192,14 +191,14 @@ def uplift(law: RockingLaw, one_sided: bool, t: float, duration: float) -> tuple
 
 
 @inlined
-def root(end: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float) -> float:
-    """When within the next `h` the wall is at an end of its arc: UPRIGHT, TURNED or LYING [s].
+def time_of_end(end: int, loads: Loads, theta: float, omega: float, h: float) -> float:
+    """Time within the next `h` at which the wall is at an end of its arc: UPRIGHT, TURNED or LYING [s].
 
-    Newton's method, from the root at a constant acceleration, held by bisection. The other arguments are those of
+    Newton's method, from the root at a constant acceleration, bounded by bisection. The other arguments are those of
     `nystroem`.
     """
-    k1 = acceleration(toe, ties, push.x, push.z, theta, math.sin(theta), math.cos(theta))
-    goal = toe.side * ON_ITS_FACE if end == LYING else 0.0
+    k1 = acceleration(loads, 0.0, theta, math.sin(theta), math.cos(theta))
+    goal = loads.toe.side * ON_ITS_FACE if end == LYING else 0.0
     if end == TURNED:
         start, over, under = omega, -omega, k1
     else:
@@ -210,8 +209,8 @@ def root(end: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: fl
     if not low < tau < high:
         tau = 0.5 * h
     for _ in range(NEWTON):
-        at, speed, _, pulling = nystroem(toe, ties, push, theta, omega, tau)
-        value, slope = (speed, pulling) if end == TURNED else (at - goal, speed)
+        at, speed, _, rate = nystroem(loads, theta, omega, tau)
+        value, slope = (speed, rate) if end == TURNED else (at - goal, speed)
         if start * value > 0:
             low = tau
         else:
@@ -224,16 +223,16 @@ def root(end: int, toe: Toe, ties: WallTies, push: Push, theta: float, omega: fl
 
 
 @inlined
-def noted(room: ArcRoom, t: float, theta: float, omega: float, pulling: float) -> None:
-    """Write a knot."""
+def write_knot(room: ArcRoom, t: float, theta: float, omega: float, rate: float) -> None:
+    """Write a knot, with its acceleration."""
     knot = room.knots[room.counts[0]]
-    knot[0], knot[1], knot[2], knot[3] = t, theta, omega, pulling
+    knot[0], knot[1], knot[2], knot[3] = t, theta, omega, rate
     room.counts[0] += 1
 
 
 @inlined
-def met(room: ArcRoom, law: RockingLaw, t: float, side: float, omega: float) -> float:
-    """Write an impact, and return the angular velocity after it."""
+def write_impact(room: ArcRoom, law: RockingLaw, t: float, side: float, omega: float) -> float:
+    """Write an impact. Returns the angular velocity after it [rad/s]."""
     impact, e = room.impacts[room.counts[1]], room.e[room.counts[1]]
     leaving = math.copysign(1.0, e * omega)
     arriving = (law.outer if side > 0 else law.inner).inertia
@@ -258,41 +257,42 @@ def rocking_loop(
     while room.counts[0] + 4 < len(room.knots) and max(room.counts[1], room.counts[2]) < len(room.peaks) and not ended:
         if at_rest:
             lifted, towards = uplift(law, rules.one_sided, t, rules.duration)
-            noted(room, t, 0.0, 0.0, 0.0)
+            write_knot(room, t, 0.0, 0.0, 0.0)
             if lifted >= rules.duration:
                 t, ended = rules.duration, True
-                noted(room, t, 0.0, 0.0, 0.0)
+                write_knot(room, t, 0.0, 0.0, 0.0)
                 break
             t, theta, omega, side, at_rest = lifted, 0.0, 0.0, towards, False
         toe = law.outer if side > 0 else law.inner
         push, stop = pushed(law.x, law.z, t)
-        h = until_change(toe, ties, push, theta, omega, min(rules.longest, stop - t, rules.duration - t))
-        new_theta, new_omega, k1, k3 = nystroem(toe, ties, push, theta, omega, h)
+        loads = Loads(toe, ties, push)
+        h = until_change(loads, theta, omega, min(rules.longest, stop - t, rules.duration - t))
+        new_theta, new_omega, k1, k3 = nystroem(loads, theta, omega, h)
         if k1 * k3 < 0 and omega * new_omega >= 0:
             middle = h * k1 / (k1 - k3)  # of the step's extreme velocity
-            if middle > 1e-6 * h and nystroem(toe, ties, push, theta, omega, middle)[1] * new_omega < 0:
+            if middle > 1e-6 * h and nystroem(loads, theta, omega, middle)[1] * new_omega < 0:
                 h = middle  # the wall turns, and turns again within the step
-                new_theta, new_omega, _, k3 = nystroem(toe, ties, push, theta, omega, h)
+                new_theta, new_omega, _, k3 = nystroem(loads, theta, omega, h)
         turned = omega * new_omega < 0
         if turned:
-            h = root(TURNED, toe, ties, push, theta, omega, h)
-            new_theta, _, _, k3 = nystroem(toe, ties, push, theta, omega, h)
+            h = time_of_end(TURNED, loads, theta, omega, h)
+            new_theta, _, _, k3 = nystroem(loads, theta, omega, h)
             new_omega = 0.0
         hit, fell = side * new_theta <= 0, side * new_theta >= ON_ITS_FACE
         if hit or fell:
             at_once = hit and theta == 0.0 and side * omega < 0  # released against its stop
-            h = 0.0 if at_once else root(UPRIGHT if hit else LYING, toe, ties, push, theta, omega, h)
-            _, new_omega, _, k3 = nystroem(toe, ties, push, theta, omega, h)
+            h = 0.0 if at_once else time_of_end(UPRIGHT if hit else LYING, loads, theta, omega, h)
+            _, new_omega, _, k3 = nystroem(loads, theta, omega, h)
             new_theta = 0.0 if hit else side * ON_ITS_FACE
         elif turned and side * omega > 0:
             room.peaks[room.counts[2]] = abs(new_theta)
             room.counts[2] += 1
-        take_changes(toe, ties, new_theta, turned)
-        noted(room, t, theta, omega, k1)
+        update_states(toe, ties, new_theta, turned)
+        write_knot(room, t, theta, omega, k1)
         t, theta, omega = t + h, new_theta, new_omega
-        noted(room, t, theta, omega, k3)
+        write_knot(room, t, theta, omega, k3)
         if hit:
-            omega = met(room, law, t, side, omega)
+            omega = write_impact(room, law, t, side, omega)
             at_rest = room.impacts[room.counts[1] - 1, 4] <= rules.rest
             side = math.copysign(1.0, omega)
         ended = fell or t >= rules.duration
@@ -340,7 +340,7 @@ def rock(case: Case, restitutions: Callable[[int], Array], least: float, rtol: f
     rules = Rules(case.one_sided, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
     clock = ArcClock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
     for _ in range(3):  # from slack to taut to yielding to taut
-        take_changes(Toe.from_case(case, case.direction), law.ties, case.theta0, not case.released_outwards)
+        update_states(Toe.from_case(case, case.direction), law.ties, case.theta0, not case.released_outwards)
     few = CHUNK // 4
     e, counts = restitutions(few), np.zeros(3, dtype=np.int64)
     room, parts = ArcRoom(e, np.empty((CHUNK, 4)), np.empty((few, 5)), np.empty(few), counts), []

@@ -26,8 +26,8 @@ from ..problem.masonry.masonry import Masonry
 from ..problem.masonry.rigid_stack import RigidStack
 from ..quantities import Array, Flags, frozen, require_array, require_kind
 
-NOTHING = 1e-9
-"""Share of the momentum, and of the speed, that counts as none [-]."""
+IMPACT_ROUNDING = 1e-9
+"""Momentum, or speed, over the largest one, below which it counts as zero [-]."""
 EXACT = 1e-13
 """Rate of closing, over the velocity, that is a rounding error [-]."""
 MOST_CHANGES = 10
@@ -92,8 +92,8 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     slips = rates(blocks, ends, ends.along).toarray()[::2] / root  # both ends of a joint slip alike
     after, pressed, rubbed = _projected(root * before, opens, slips, masonry.joint_friction > 0)
     momentum = float(np.linalg.norm(root * before))
-    after[np.abs(after) <= NOTHING * momentum] = 0.0  # a block that stops has a velocity of exactly zero
-    widens = (opens @ after).reshape(-1, 2).max(axis=1) > NOTHING * momentum / root.max()
+    after[np.abs(after) <= IMPACT_ROUNDING * momentum] = 0.0  # a block that stops has a velocity of exactly zero
+    widens = (opens @ after).reshape(-1, 2).max(axis=1) > IMPACT_ROUNDING * momentum / root.max()
     return RigidImpact(
         velocity=frozen((after / root).reshape(-1, 3)),
         kept=float(after @ after) / momentum**2,
@@ -102,7 +102,7 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     )
 
 
-def rigid_rocking(pile: RigidStack) -> Restitution:
+def rigid_rocking(stack: RigidStack) -> Restitution:
     """The restitution of a stack that rocks as one.
 
     That of the base is of the rigid impact. That of the side stop conserves the angular momentum about its top (Eq. 3
@@ -111,16 +111,16 @@ def rigid_rocking(pile: RigidStack) -> Restitution:
     Raises:
         ValueError: if the side stop is so low that the stack turns on over it.
     """
-    outwards = pile.outwards
-    base = math.sqrt(min(1.0, rigid_impact(pile.free_standing, pile.turning(outwards, -outwards)).kept))
-    if not pile.sides:
+    outwards = stack.outwards
+    base = math.sqrt(min(1.0, rigid_impact(stack.free_standing, stack.turning(outwards, -outwards)).kept))
+    if not stack.sides:
         return Restitution(base, 0.0)
-    joints, mass, (x, z) = [pile.masonry.plane_joints[i] for i in pile.sides], float(pile.masses.sum()), pile.centroid
-    foot = pile.masonry.joints[pile.base].middle
+    joints, mass, (x, z) = [stack.masonry.plane_joints[i] for i in stack.sides], float(stack.masses.sum()), stack.centroid
+    foot = stack.masonry.joints[stack.base].middle
     below = z + foot[1] - max(max(joint.start[1], joint.end[1]) for joint in joints)
     face = outwards * (x + foot[0] - joints[0].middle[0])
-    kept = pile.inertia + mass * (pile.lever(-outwards) * face + z * below)
-    return Restitution(base, float(kept / (pile.inertia + mass * (face**2 + below**2))))
+    kept = stack.inertia + mass * (stack.lever(-outwards) * face + z * below)
+    return Restitution(base, float(kept / (stack.inertia + mass * (face**2 + below**2))))
 
 
 def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple[Array, Array, Array]:
@@ -132,8 +132,8 @@ def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple
     released, once, and one that closes is held.
     """
     sizes = np.linalg.norm(slips, axis=1)
-    rate = NOTHING * float(np.linalg.norm(before)) * sizes  # of a joint that stays closed
-    impulse = NOTHING * float(np.linalg.norm(before)) / sizes  # of a joint that changes nothing
+    rate = IMPACT_ROUNDING * float(np.linalg.norm(before)) * sizes  # of a joint that stays closed
+    impulse = IMPACT_ROUNDING * float(np.linalg.norm(before)) / sizes  # of a joint that changes nothing
 
     def closed_in(velocity: Array) -> Flags:
         return (opens @ velocity).reshape(-1, 2).min(axis=1) <= rate
@@ -154,7 +154,7 @@ def _with_sticking(before: Array, opens: Array, slips: Array, sticking: Flags) -
     """As `_projected`, for joints of which it is known whether they are held."""
     free = null_space(slips[sticking]) if sticking.any() else np.eye(len(before))
     rates = opens @ free
-    rates[np.linalg.norm(rates, axis=1) <= NOTHING * np.linalg.norm(opens, axis=1)] = 0.0  # ends that cannot move
+    rates[np.linalg.norm(rates, axis=1) <= IMPACT_ROUNDING * np.linalg.norm(opens, axis=1)] = 0.0  # ends that cannot move
     pressed, rubbed = _nearest(rates, free.T @ before), np.zeros(len(slips))
     after = free @ (free.T @ (before + opens.T @ pressed))
     rubbed[sticking] = np.linalg.lstsq(slips[sticking].T, after - before - opens.T @ pressed, rcond=None)[0]

@@ -15,6 +15,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..compiled import inlined
 from ..problem.ground.motion import GroundMotion
@@ -28,7 +29,7 @@ SMALL = 0.05
 SINE, COSINE = (-1 / 6, 1 / 120, -1 / 5040), (-1 / 2, 1 / 24, -1 / 720, 1 / 40320)
 """Coefficients of these series."""
 SLACK, TAUT, YIELDING, BROKEN = 0, 1, 2, 3
-"""What a tie does in a step."""
+"""States of a tie in a step."""
 
 
 class GroundArrays(NamedTuple):
@@ -76,19 +77,19 @@ class WallTies(NamedTuple):
     """The ties of a wall.
 
     Args:
-        pulls: the numbers of each `TiePull`, shape (t, 9).
-        doing: what each tie does, shape (t,).
+        pulls: the fields of each `TiePull`, shape (t,).
+        state: of each tie, one of SLACK to BROKEN, shape (t,).
         plastic: elongation that each tie has yielded [m], shape (t,).
     """
 
-    pulls: Array
-    doing: Integers
+    pulls: NDArray[np.void]
+    state: Integers
     plastic: Array
 
     @classmethod
     def from_case(cls, case: Case) -> WallTies:
         """The ties of a case."""
-        pulls = np.reshape(np.array(case.pulls, dtype=float), (-1, len(TiePull._fields)))
+        pulls = np.array([*case.pulls], dtype=[(name, float) for name in TiePull._fields]).view(np.recarray)
         return cls(pulls, np.full(len(pulls), SLACK), np.zeros(len(pulls)))
 
 
@@ -123,8 +124,7 @@ class RockingLaw(NamedTuple):
         """The largest of p and the frequencies of the ties [rad/s]."""
         p2 = max(math.hypot(toe.P, toe.Q) for toe in (self.outer, self.inner))
         least = min(self.outer.inertia, self.inner.inertia)
-        pulls = [TiePull(*tie) for tie in self.ties.pulls]
-        stiff = sum(pulled(tie, 0.0, 1.0)[1] ** 2 * tie.stiffness / least for tie in pulls)
+        stiff = sum(pulled(tie, 0.0, 1.0)[1] ** 2 * tie.stiffness / least for tie in self.ties.pulls)
         return math.sqrt(max(p2, float(stiff)))
 
 
@@ -135,6 +135,14 @@ class Push(NamedTuple):
     x_rate: float
     z: float
     z_rate: float
+
+
+class Loads(NamedTuple):
+    """The loads on a wall in a step: restoring moments about its toe, its ties, and the motion of its base."""
+
+    toe: Toe
+    ties: WallTies
+    push: Push
 
 
 @inlined
@@ -183,47 +191,37 @@ def turned_by(theta: float, sine: float, cosine: float, delta: float) -> tuple[f
 
 @inlined
 def acceleration_by_ties(toe: Toe, ties: WallTies, theta: float) -> float:
-    """Acceleration by the ties, each doing in the step what it did at its start [rad/s2]."""
+    """Acceleration by the ties, each in the state that it had at the start of the step [rad/s2]."""
     total = 0.0
-    for i in range(len(ties.doing)):
-        if ties.doing[i] == TAUT or ties.doing[i] == YIELDING:
-            tie = pull_of(ties, i)
+    for i in range(len(ties.state)):
+        if ties.state[i] == TAUT or ties.state[i] == YIELDING:
+            tie = ties.pulls[i]
             elongation, lever = pulled(tie, theta, toe.side)
-            force = tie.strength if ties.doing[i] == YIELDING else tie.stiffness * (elongation - ties.plastic[i])
+            force = tie.strength if ties.state[i] == YIELDING else tie.stiffness * (elongation - ties.plastic[i])
             total -= force * lever
     return total / toe.inertia
 
 
 @inlined
-def pull_of(ties: WallTies, i: int) -> TiePull:
-    """Tie i."""
-    tie = ties.pulls[i]
-    return TiePull(tie[0], tie[1], tie[2], tie[3], tie[4], tie[5], tie[6], tie[7], tie[8])
-
-
-@inlined
-def acceleration(toe: Toe, ties: WallTies, x: float, z: float, theta: float, sine: float, cosine: float) -> float:
-    """theta'' at accelerations x and z of the base over g [rad/s2]."""
-    push = toe.side * x
-    a, b = toe.P + toe.Wd * z + toe.Wz * push, toe.Q + toe.Wz * z - toe.Wd * push
+def acceleration(loads: Loads, after: float, theta: float, sine: float, cosine: float) -> float:
+    """theta'' a time after the start of a step [rad/s2], with the sine and the cosine of the rotation."""
+    toe, push = loads.toe, loads.push
+    x, z = toe.side * (push.x + after * push.x_rate), push.z + after * push.z_rate
+    a, b = toe.P + toe.Wd * z + toe.Wz * x, toe.Q + toe.Wz * z - toe.Wd * x
     total: float = b * sine - toe.side * a * cosine
-    return total + acceleration_by_ties(toe, ties, theta) if len(ties.doing) > 0 else total
+    return total + acceleration_by_ties(toe, loads.ties, theta) if len(loads.ties.state) > 0 else total
 
 
 @inlined
-def nystroem(
-    toe: Toe, ties: WallTies, push: Push, theta: float, omega: float, h: float
-) -> tuple[float, float, float, float]:
+def nystroem(loads: Loads, theta: float, omega: float, h: float) -> tuple[float, float, float, float]:
     """Rotation and velocity a time `h` later by Nystroem's fourth-order method, and the accelerations at both ends."""
     sine, cosine = math.sin(theta), math.cos(theta)
-    k1 = acceleration(toe, ties, push.x, push.z, theta, sine, cosine)
+    k1 = acceleration(loads, 0.0, theta, sine, cosine)
     delta = 0.5 * h * (omega + 0.25 * h * k1)
     sine_2, cosine_2 = turned_by(theta, sine, cosine, delta)
-    x, z = push.x + 0.5 * h * push.x_rate, push.z + 0.5 * h * push.z_rate
-    k2 = acceleration(toe, ties, x, z, theta + delta, sine_2, cosine_2)
+    k2 = acceleration(loads, 0.5 * h, theta + delta, sine_2, cosine_2)
     delta = h * (omega + 0.5 * h * k2)
     sine_3, cosine_3 = turned_by(theta, sine, cosine, delta)
-    x, z = push.x + h * push.x_rate, push.z + h * push.z_rate
-    k3 = acceleration(toe, ties, x, z, theta + delta, sine_3, cosine_3)
+    k3 = acceleration(loads, h, theta + delta, sine_3, cosine_3)
     sixth = h / 6
     return theta + h * (omega + sixth * (k1 + 2 * k2)), omega + sixth * (k1 + 4 * k2 + k3), k1, k3
