@@ -126,7 +126,7 @@ BY_HAND: dict[str, tuple[str, ...]] = {
     "distinct/kinds/mortar.py": ("bonds_of_lines",),
     "distinct/search/clipping.py": ("clipping", "grid"),
     "distinct/contacts/contact.py": ("contact_lines",),
-    "distinct/contacts/faces.py": ("outlines",),
+    "distinct/contacts/faces.py": ("outlines", "contact_lines"),
     "distinct/search/finder.py": ("finder",),
     "distinct/contacts/friction.py": ("friction_of_lines",),
     "distinct/force_record.py": ("forces_of_lines",),
@@ -234,7 +234,7 @@ EQUIVALENT = {
     "pair_law.py: least = np.ones(len(known) + 2)": "the last of them is read, and all are one",
     "mortar.py: if gap <= 0 and bond.strength < math.inf:": "at a gap of zero nothing is crushed",
     "mortar.py: if gap < 1 and bond.strength < math.inf:": "what is open is not crushed by the law, either",
-    "contact.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
+    "faces.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
     "contact.py: if push <= 0 and line.push > 0:": "a push of zero has no friction in this way, too",
     "contact.py: if push < 1 and line.push > 0:": "a push of zero has no friction in this way, too",
     **{
@@ -264,8 +264,8 @@ EQUIVALENT = {
     "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (
         "at a gap of zero nothing presses"
     ),
-    "contact.py: GAP_OF_OPEN = 2.0": "at no gap above zero is anything left of a line",
-    "contact.py: TURNED_OVER = 4 * GAP_OF_OPEN": "it is a number that no gap is",
+    "faces.py: GAP_OF_OPEN = 2.0": "at no gap above zero is anything left of a line",
+    "faces.py: TURNED_OVER = 4 * GAP_OF_OPEN": "it is a number that no gap is",
     "clipping.py: best, largest = -2, -math.inf": "every block has a face",
     "clipping.py: normal, edge, from_edge = normal_of(solids, face), -2, math.inf": "every face has an edge",
     "clipping.py: crossed, from_crossed, one_place = -2, math.inf, ONE_PLACE * longest_edge(solids, face)": (
@@ -274,8 +274,8 @@ EQUIVALENT = {
     **{
         f"clipping.py: {line}": "no place is so far from a corner to the last bit"
         for line in (
-            "if length_of(minus(at, corner)) <= one_place:",
-            "if length_of(off) <= one_place:",
+            "if norm(minus(at, corner)) <= one_place:",
+            "if norm(off) <= one_place:",
         )
     },
     **{
@@ -289,11 +289,11 @@ EQUIVALENT = {
     **{
         f"finder.py: {line}": "there is more room than is taken"
         for line in (
-            "self._table, self._room = rows(PLACE, 512), np.empty((4 * most + 4, 3))",
-            "self._table, self._room = rows(PLACE, 256), np.empty((8 * most + 4, 3))",
-            "self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 8, 3))",
-            "self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 6))",
-            "self._table = rows(PLACE, 4 * count)",
+            "self._work = Workspace(rows(PLACE, 512), np.empty((4 * most + 4, 3)))",
+            "self._work = Workspace(rows(PLACE, 256), np.empty((8 * most + 4, 3)))",
+            "self._work = Workspace(rows(PLACE, 256), np.empty((4 * most + 8, 3)))",
+            "self._work = Workspace(rows(PLACE, 256), np.empty((4 * most + 4, 6)))",
+            "self._work = self._work._replace(places=rows(PLACE, 4 * count))",
         )
     },
     **{
@@ -360,7 +360,7 @@ EQUIVALENT = {
         )
     },
     "validity.py: AXES = np.eye(6)": "the first three numbers of the first three rows are read",
-    "loop.py: if len(system.ways) > 1:": "in space, where inertias turn, a line has two ways",
+    "loop.py: if len(system.tangents) > 1:": "in space, where inertias turn, a line has two tangential directions",
     "step_control.py: return 0 if h * control.frequency <= control.method.smooth else 1": "no step is at the limit",
 }
 """Mutants that no test can notice, by module and changed line, and why."""

@@ -31,7 +31,7 @@ def free_body(mass, inertia, spin):
         quaternion=[1.0, 0, 0, 0],
         momentum=inertia @ spin,
     )
-    none = {"lines": kind.line, "edges": kind.edge, "ways": kind.way}
+    none = {"lines": kind.line, "edges": kind.edge, "tangents": kind.tangent}
     tables: dict = {name: rows(of, 0) for name, of in none.items()}
     links = tuple(
         each(each.table(3, 0), *((moving((), 1),) if each is Actuators else ()))

@@ -35,7 +35,7 @@ def system_of(scene: Scene, *, ended: bool = False) -> System:
     if ended:
         edges = add_joints(lines, scene)
     acting = (), np.zeros(0, dtype=np.int64), Ground.from_motions(None), moving((), d)
-    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.way, 0), no_laws(d), *acting)
+    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.tangent, 0), no_laws(d), *acting)
     return at_pose(system.with_room_for_friction(), scene.potential.unmoved.reshape(n, -1))
 
 
@@ -131,14 +131,14 @@ def guided_as(bodies: Rows, others: Rows) -> None:
 
 def copied(system: System) -> System:
     """A system whose motion leaves the first as it is."""
-    tables: dict[str, Any] = {name: getattr(system, name).copy() for name in ("bodies", "lines", "edges", "ways")}
+    tables: dict[str, Any] = {name: getattr(system, name).copy() for name in ("bodies", "lines", "edges", "tangents")}
     for name in ("laws", "links"):
         tables[name] = tuple(table._replace(rows=table.rows.copy()) for table in getattr(system, name))
     return system._replace(**tables)
 
 
 def set_initial_friction(lines: Rows, drag: Array) -> None:
-    """Let lines start with the friction at rest along the ways of their faces [N], shape (m, d - 1)."""
+    """Let lines start with the friction at rest along the tangents of their faces [N], shape (m, d - 1)."""
     force = drag
     if drag.shape[1] == 2:
         first, second = np.array([tangents(tuple(normal)) for normal in lines["normal"].tolist()]).swapaxes(0, 1)

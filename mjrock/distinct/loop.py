@@ -119,7 +119,7 @@ def start_forces(system: System, books: Books, push: Vector, before: float) -> N
     for b in range(len(system.bodies)):
         body = system.bodies[b]
         update_rotation(body)
-        if len(system.ways) > 0:
+        if len(system.tangents) > 0:
             take_inverse_inertia(body)
         done -= before * body.mass * dot(mean, read(body.velocity))
         put(body.force, scaled(-body.mass, weight))
@@ -290,10 +290,8 @@ def has_links(samples: Samples) -> bool:
 
 
 @inlined
-def settle_step(
-    system: System, books: Books, samples: Samples, clock: Clock, step: Step, sticking: int, touched: int
-) -> None:
-    """Finish a step, by one thread for all: rigid friction, touches and links, and the records of a sample."""
+def settle_step(system: System, books: Books, samples: Samples, step: Step, sticking: int, touched: int) -> None:
+    """Finish the forces of a step, by one thread for all: rigid friction, touches and links."""
     energy, kick = samples.energy[step.kept], step.kick
     stick(system, books.active, sticking, kick)
     stored_energy, put_in = settle_touches(system, books, touched, kick)
@@ -305,12 +303,6 @@ def settle_step(
         if step.before > 0:  # halves that belong to the time before the pose
             energy.friction += rubbed
             energy.ground += put_in
-    if clock.drag > 0:
-        damp_velocities(system, books, clock.drag * kick)
-    if step.sampled or step.checked:
-        record_velocity(system.bodies, samples, step.kept, step.before)
-    if step.sampled:
-        record_forces(system, samples, step.kept)
 
 
 @compiled_at_once
@@ -340,7 +332,13 @@ def advance(system: System, books: Books, samples: Samples, clock: Clock, thread
         if kept or sticking > 0 or touched > 0 or clock.drag > 0 or has_links(samples):
             wait(thread)
             if thread.number == 0:
-                settle_step(system, books, samples, clock, step, sticking, touched)
+                settle_step(system, books, samples, step, sticking, touched)
+                if clock.drag > 0:
+                    damp_velocities(system, books, clock.drag * step.kick)
+                if kept:
+                    record_velocity(system.bodies, samples, step.kept, step.before)
+                if step.sampled:
+                    record_forces(system, samples, step.kept)
                 if step.checked:
                     samples.checks[-(-n // clock.check)] = samples.energy[step.kept]
                 if step.sampled and is_astray(system.bodies, clock.ends):

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled import by_type, inlined
-from ..geometry.vectors import Vector, dot, increase, moment, plus, put, read, scaled, spun, times
+from ..geometry.vectors import Vector, dot, increase, moment, norm, plus, put, read, scaled, spun, times
 from ..quantities import Array
 from .rows import Row, Rows
 
@@ -236,7 +236,7 @@ def _step_in_plane(body: Row, h: float) -> None:
 @inlined
 def _step_in_space(body: Row, h: float) -> None:
     spin = middle_spin(body, momentum_of(body), h)
-    size = math.sqrt(dot(spin, spin))
+    size = norm(spin)
     half = 0.5 * h * size
     if half < SERIES_ANGLE:
         c, share = 1 - 0.5 * half * half, 0.5 * h * (1 - half * half / 6)

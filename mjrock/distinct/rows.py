@@ -35,7 +35,7 @@ class Kinds(NamedTuple):
         body: a rigid body.
         line: a contact line, in space a contact point: a point of a body on the face of another body or fixed block.
         edge: an edge of a face, of which one in the plane has two.
-        way: a tangential direction of a line that sticks rigidly. A line has d - 1 of them.
+        tangent: a tangential direction of a line that sticks rigidly. A line has d - 1 of them.
         total: what is booked for all lines together [J]: `friction`, what is in the shear springs included, `ground`,
             the work of ground and supports, and `DISSIPATED_BY_LAWS`; `push` is the acceleration of the ground in the
             last step [m/s2].
@@ -45,7 +45,7 @@ class Kinds(NamedTuple):
     body: np.dtype[np.void]
     line: np.dtype[np.void]
     edge: np.dtype[np.void]
-    way: np.dtype[np.void]
+    tangent: np.dtype[np.void]
     total: np.dtype[np.void]
     apart: np.dtype[np.void]
 
@@ -58,7 +58,7 @@ def kinds(d: int) -> Kinds:
         _body(d, s),
         _line(d, s),
         _edge(d),
-        _way(d, s),
+        _tangent(d, s),
         [*numbers("friction", "ground", *DISSIPATED_BY_LAWS), *vectors(d, "push")],
         [*integers("body"), *vectors(d, "force"), *vectors(s, "moment")],
     )
@@ -114,7 +114,7 @@ def _line(d: int, s: int) -> Fields:
         *vectors(d, "origin"),  # a point of the face from the centroid of its body [m]
         *vectors(d, "normal"),  # unit vector out of the face, of a POINT_ON_FIXED_BLOCK into that of the body
         *numbers(*Law._fields, "c_s"),  # of the law, and the dashpot along the face [N s/m]
-        *numbers("margin"),  # square of the least way from the origin to the end of the face, or infinite [m2]
+        *numbers("margin"),  # square of the least distance of the origin from the end of the face, or infinite [m2]
         *numbers("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
         *numbers("depth", "rate"),  # overlap, and growth of the gap, in the last step [m, m/s]
         *vectors(s, "dragged"),  # friction of the shear spring in the last step [N]
@@ -133,17 +133,17 @@ def _line(d: int, s: int) -> Fields:
 
 def _edge(d: int) -> Fields:
     return [
-        *vectors(d, "way"),  # its normal in the plane of the face
+        *vectors(d, "normal"),  # unit vector out of it in the plane of the face
         *numbers("reach"),  # how far the face reaches along it from the centroid of the body [m]
-        *numbers("band"),  # way beyond over which the normal of a contact turns [m]
+        *numbers("band"),  # distance beyond over which the normal of a contact turns [m]
     ]
 
 
-def _way(d: int, s: int) -> Fields:
+def _tangent(d: int, s: int) -> Fields:
     return [
         *integers("body", "face", "support"),  # those of its line, so that sweeps need no lines
         *numbers("limit"),  # the most that the face holds in this step [N s]
-        *vectors(d, "way"),  # the tangential direction
+        *vectors(d, "direction"),  # unit vector
         *vectors(s, "lever", "lever_on_face"),  # moment of a unit impulse about the two centroids [m]
         *vectors(s, "spin", "spin_of_face"),  # angular velocity that it gives to the two bodies [1/(kg m)]
         *numbers("compliance", "coupling"),  # slip by a unit impulse along its direction, along the other [1/kg]

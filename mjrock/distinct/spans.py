@@ -39,24 +39,32 @@ def books_of_span(books: Books, span: int, dashpots: Array, active: Integers, to
     """The books of a span, with these accounts of dashpots and this room in the lists."""
     totals = books.totals[span : span + 1]
     return Books(
-        dashpots, books.links, totals, active, touched, books.impulse, books.remaining, books.encounters, books.apart
+        dashpots=dashpots,
+        links=books.links,
+        totals=totals,
+        active=active,
+        touched=touched,
+        impulse=books.impulse,
+        remaining=books.remaining,
+        encounters=books.encounters,
+        apart=books.apart,
     )
 
 
 @inlined
-def with_rows(system: System, bodies: Rows, lines: Rows, ways: Rows) -> System:
-    """A system with some of its bodies, lines and ways."""
+def with_rows(system: System, bodies: Rows, lines: Rows, tangents: Rows) -> System:
+    """A system with some of its bodies, lines and tangential directions."""
     return System(
-        system.axes,
-        bodies,
-        lines,
-        system.edges,
-        ways,
-        system.laws,
-        system.links,
-        system.guided,
-        system.ground,
-        system.supports,
+        axes=system.axes,
+        bodies=bodies,
+        lines=lines,
+        edges=system.edges,
+        tangents=tangents,
+        laws=system.laws,
+        links=system.links,
+        guided=system.guided,
+        ground=system.ground,
+        supports=system.supports,
     )
 
 
@@ -65,7 +73,7 @@ def bodies_of_span(system: System, books: Books, thread: Thread, span: int) -> t
     """The bodies of a span, and its books."""
     some = system.bodies[thread.bodies[span] : thread.bodies[span + 1]]
     own = books_of_span(books, span, books.dashpots, books.active, books.touched)
-    return with_rows(system, some, system.lines, system.ways), own
+    return with_rows(system, some, system.lines, system.tangents), own
 
 
 @inlined
@@ -88,7 +96,7 @@ def press_by_laws(laws: Tables, system: System, books: Books, thread: Thread, t:
         if len(laws[0].rows) > 0:
             for span in range(thread.own_lines[0], thread.own_lines[1]):
                 first, last = thread.lines[span], thread.lines[span + 1]
-                some = with_rows(system, system.bodies, system.lines[first:last], system.ways)
+                some = with_rows(system, system.bodies, system.lines[first:last], system.tangents)
                 own = books_of_lines(system, books, thread, span, books.active, books.touched)
                 act(rows_within(laws[0], first, last), some, own, t, h)
             bring_together(thread, books.apart, system.bodies)
@@ -99,11 +107,11 @@ def press_by_laws(laws: Tables, system: System, books: Books, thread: Thread, t:
 @inlined
 def press_own_lines(system: System, books: Books, thread: Thread, h: float, kick: float, lead: float) -> int:
     """`press_lines` for the lines of a thread. Returns how many stick rigidly."""
-    active, touched, ways = 0, 0, len(system.axes) - 1
+    active, touched, each = 0, 0, len(system.axes) - 1
     start = thread.starts[thread.number]
     for span in range(thread.own_lines[0], thread.own_lines[1]):
         first, last = thread.lines[span], thread.lines[span + 1]
-        some = with_rows(system, system.bodies, system.lines[first:last], system.ways[ways * active :])
+        some = with_rows(system, system.bodies, system.lines[first:last], system.tangents[each * active :])
         own = books_of_lines(system, books, thread, span, books.active[active:], books.touched[start + touched :])
         sticking, met = press_lines(some, own, h, kick, lead)
         for i in range(sticking):

@@ -35,9 +35,9 @@ def longest_step(system: System) -> float:
     lengths, root = csr_array(vstack(rates)), root_of_masses(system)
 
     def weights(i: int) -> Array:
-        along, across = ((largest_stiffness(lines), lines["k_s"]), (lines["c"], lines["c_s"]))[i]
-        ways = [np.where(np.isfinite(lines["k_s"]), across, 0.0)] * (len(system.axes) - 1)
-        return np.concatenate([along, *ways, *(table.springs()[i] for table in links)])
+        normal, shear = ((largest_stiffness(lines), lines["k_s"]), (lines["c"], lines["c_s"]))[i]
+        along_faces = [np.where(np.isfinite(lines["k_s"]), shear, 0.0)] * (len(system.axes) - 1)
+        return np.concatenate([normal, *along_faces, *(table.springs()[i] for table in links)])
 
     return stable_step(*(highest(lengths, weights(i), root) for i in range(2)))
 

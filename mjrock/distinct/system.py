@@ -11,7 +11,7 @@ from ..quantities import Array, Integers
 from ..scene.course import Ground
 from .rows import DISSIPATED_BY_LAWS, Rows, joined, kinds, rows
 from .supports import Supports
-from .thread import Thread, threads_of
+from .thread import BODIES_TOGETHER, Thread, spans_of, threads_of
 
 Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
@@ -23,7 +23,7 @@ supports and what actuators have put in, and what `rows.DISSIPATED_BY_LAWS` name
 
 
 class System(NamedTuple):
-    """Bodies with their motion, contact lines, and all that acts on them. `ways` has room for the d - 1 tangential
+    """Bodies with their motion, contact lines, and all that acts on them. `tangents` has room for the d - 1 tangential
     directions of each line that sticks rigidly. `laws` has a table for each law of joints beside the dry one, `links`
     one for each kind of links, and `guided` the body of each actuator."""
 
@@ -31,7 +31,7 @@ class System(NamedTuple):
     bodies: Rows
     lines: Rows
     edges: Rows
-    ways: Rows
+    tangents: Rows
     laws: Tables
     links: Tables
     guided: Integers
@@ -41,9 +41,9 @@ class System(NamedTuple):
     def with_room_for_friction(self) -> System:
         """The system with room for the tangential directions of all its lines, if one of them sticks rigidly."""
         needed = (len(self.axes) - 1) * len(self.lines)
-        if len(self.ways) >= needed or not np.isinf(self.lines["k_s"]).any():
+        if len(self.tangents) >= needed or not np.isinf(self.lines["k_s"]).any():
             return self
-        return self._replace(ways=rows(self.ways.dtype, needed))
+        return self._replace(tangents=rows(self.tangents.dtype, needed))
 
 
 class Books(NamedTuple):
@@ -83,23 +83,23 @@ class Books(NamedTuple):
 
     def with_room(self, system: System) -> Books:
         """The books with room for the lines of a system."""
-        return self.of_threads(system, 1)[0]
-
-    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Thread, ...]]:
-        """The books with room for the lines of a system, and a number of threads for them."""
-        (threads, apart), lines = threads_of(system.bodies, system.lines, count), len(system.lines)
-        books, spans = self._replace(apart=apart), len(threads[0].lines) - 1
+        books, lines, spans = self, len(system.lines), len(spans_of(system.lines)) - 1
         if lines > len(self.active):
             active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
             books = books._replace(active=active, touched=touched, impulse=np.zeros(lines), remaining=np.zeros(lines))
-        more = max(spans, len(threads[0].bodies) - 1) - len(self.totals)
+        more = max(spans, -(-len(system.bodies) // BODIES_TOGETHER)) - len(self.totals)
         if more > 0:
             books = books._replace(totals=joined(self.totals, rows(self.totals.dtype, more)))
         if spans + len(self.dashpots) > len(self.encounters):
             encounters = np.zeros(spans + len(self.dashpots))
             encounters[: len(self.encounters)] = self.encounters
             books = books._replace(encounters=encounters)
-        return books, threads
+        return books
+
+    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Thread, ...]]:
+        """The books with room for the lines of a system, and a number of threads for them."""
+        threads, apart = threads_of(system.bodies, system.lines, count)
+        return self.with_room(system)._replace(apart=apart), threads
 
     @property
     def size(self) -> int:

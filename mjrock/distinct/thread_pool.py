@@ -76,7 +76,7 @@ class ThreadPool:
         """Make the steps from that of the clock to its stop, with the number of threads that has been the fastest."""
         choices = (self._most,) if self.threads is not None else (self._most, 1)
         few = self.threads is None and len(system.lines) < WORTH_THREADS
-        if few or len(system.ways) or self._most == 1 or isinstance(steps, Loop):
+        if few or len(system.tangents) or self._most == 1 or isinstance(steps, Loop):
             choices = (1,)  # sweeps over lines that stick rigidly take one after the other, and so does plain Python
         count, stop = self._choice(choices, clock)
         begun = time.perf_counter()

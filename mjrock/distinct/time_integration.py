@@ -131,7 +131,7 @@ def breakdown(what: str, t: float) -> RuntimeError:
 
 def require_sound_rows(system: System) -> None:
     """Raise a RuntimeError that names the rows of a system in which a number is not finite."""
-    tables = [(name, getattr(system, name), MAY_BE_INFINITE) for name in ("bodies", "lines", "edges", "ways")]
+    tables = [(name, getattr(system, name), MAY_BE_INFINITE) for name in ("bodies", "lines", "edges", "tangents")]
     tables += [(type(table).__name__, table.rows, table.endless) for table in (*system.laws, *system.links)]
     for name, table, endless in tables:
         if len(wrong := unsound(table, endless)):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..compiled import compiled, inlined
 from ..quantities import Array, Integers
 from .frames import Freedom, displaced, linear, place, push_body, rotation_change, spin, take_frames
-from .vectors import Vector, dot, minus, plus, scaled, spun, tangent, tangents, vector
+from .vectors import Vector, dot, minus, norm, plus, scaled, spun, tangent, tangents, vector
 
 
 class Places(NamedTuple):
@@ -217,16 +217,14 @@ def tangents_at(places: Places, i: int, frames: Array) -> tuple[Vector, ...]:
 
 
 @inlined
-def swept_along(
-    places: Places, i: int, meets: Meeting, frames: Array, v: Array, velocity: Vector, direction: Vector
-) -> float:
+def swept_along(places: Places, i: int, meets: Meeting, frames: Array, v: Array, direction: Vector) -> float:
     """Acceleration of point i relative to its face, along a direction that turns with the face: the part that is
-    quadratic in the velocities v [m/s2]. `velocity` is the `relative_velocity`."""
+    quadratic in the velocities v [m/s2]."""
     axes, face = places.axes, places.face_body[i]
     turning = spin(frames, v, places.body[i], axes)
     swept = dot(direction, spun(turning, spun(turning, meets.arm)))
     if face >= 0:
-        turning = spin(frames, v, face, axes)
+        turning, velocity = spin(frames, v, face, axes), relative_velocity(places, i, meets, frames, v)
         swept -= dot(direction, spun(turning, plus(spun(turning, meets.face_arm), scaled(2.0, velocity))))
     return swept
 
@@ -236,7 +234,7 @@ def gap(places: Places, i: int, frames: Array, v: Array, a: Array) -> Gap:
     """The gap of point i, and how it changes with the velocities v and accelerations a of the bodies."""
     meets = meeting(places, i, frames)
     velocity, normal = relative_velocity(places, i, meets, frames, v), meets.normal
-    swept = swept_along(places, i, meets, frames, v, velocity, normal)
+    swept = swept_along(places, i, meets, frames, v, normal)
     return Gap(meets.gap, dot(normal, velocity), dot(normal, relative_velocity(places, i, meets, frames, a)), swept)
 
 
@@ -265,7 +263,7 @@ def slack(ties: Ties, i: int, frames: Array, v: Array, a: Array) -> Gap:
     if anchor >= 0:
         turning = spin(frames, v, anchor, axes)
         centripetal = minus(centripetal, spun(turning, spun(turning, at.anchor_arm)))
-    length = math.sqrt(dot(span, span))
+    length = norm(span)
     direction = scaled(1 / length, span)
     longer = dot(direction, velocity)
     swept = dot(direction, centripetal) + (dot(velocity, velocity) - longer * longer) / length

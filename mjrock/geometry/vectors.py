@@ -132,6 +132,12 @@ def dot(a: Vector, b: Vector) -> float:
 
 
 @inlined
+def norm(a: Vector) -> float:
+    """Length of a vector."""
+    return math.sqrt(dot(a, a))
+
+
+@inlined
 def spun(spin: Vector, r: Vector) -> Vector:
     """omega x r: the velocity of a point at r from an axis of rotation."""
     if len(r) == 2:

@@ -450,9 +450,8 @@ def _curvatures(
 def swept_by_friction(places: Places, i: int, frames: Array, v: Array, drag: Array) -> float:
     """Friction times the second rates of slip, the part of it that is quadratic in the velocities."""
     meets, tangents, power = meeting(places, i, frames), tangents_at(places, i, frames), 0.0
-    velocity = relative_velocity(places, i, meets, frames, v)
     for k in range(len(tangents)):
-        power += drag[i, k] * swept_along(places, i, meets, frames, v, velocity, tangents[k])
+        power += drag[i, k] * swept_along(places, i, meets, frames, v, tangents[k])
     return power
 
 

@@ -115,7 +115,11 @@ def rigid_rocking(stack: RigidStack) -> Restitution:
     base = math.sqrt(min(1.0, rigid_impact(stack.free_standing, stack.turning(outwards, -outwards)).kept))
     if not stack.sides:
         return Restitution(base, 0.0)
-    joints, mass, (x, z) = [stack.masonry.plane_joints[i] for i in stack.sides], float(stack.masses.sum()), stack.centroid
+    joints, mass, (x, z) = (
+        [stack.masonry.plane_joints[i] for i in stack.sides],
+        float(stack.masses.sum()),
+        stack.centroid,
+    )
     foot = stack.masonry.joints[stack.base].middle
     below = z + foot[1] - max(max(joint.start[1], joint.end[1]) for joint in joints)
     face = outwards * (x + foot[0] - joints[0].middle[0])
@@ -154,7 +158,9 @@ def _with_sticking(before: Array, opens: Array, slips: Array, sticking: Flags) -
     """As `_projected`, for joints of which it is known whether they are held."""
     free = null_space(slips[sticking]) if sticking.any() else np.eye(len(before))
     rates = opens @ free
-    rates[np.linalg.norm(rates, axis=1) <= IMPACT_ROUNDING * np.linalg.norm(opens, axis=1)] = 0.0  # ends that cannot move
+    rates[np.linalg.norm(rates, axis=1) <= IMPACT_ROUNDING * np.linalg.norm(opens, axis=1)] = (
+        0.0  # ends that cannot move
+    )
     pressed, rubbed = _nearest(rates, free.T @ before), np.zeros(len(slips))
     after = free @ (free.T @ (before + opens.T @ pressed))
     rubbed[sticking] = np.linalg.lstsq(slips[sticking].T, after - before - opens.T @ pressed, rcond=None)[0]

@@ -55,7 +55,7 @@ def system(d, lines=1, edges=0, still=False):
         bodies=bodies,
         lines=rows(kind.line, lines, face=-1, support=-1, k_s=np.inf, margin=np.inf, sense=1.0),
         edges=rows(kind.edge, edges),
-        ways=rows(kind.way, (d - 1) * lines),
+        tangents=rows(kind.tangent, (d - 1) * lines),
         laws=(Bonds(Bonds.table(d, lines)),),
         links=(),
         guided=np.zeros(0, dtype=np.int64),

@@ -9,7 +9,7 @@ from by_hand import about, books, matrix, system
 from test_contact_lines import ALONG, BOTH, FACES, NORMAL, met, put_line
 
 import mjrock as mr
-from mjrock.distinct.contacts import contact, friction
+from mjrock.distinct.contacts import faces, friction
 from mjrock.distinct.kinds import mortar as bonds
 from mjrock.distinct.rows import rows
 from mjrock.distinct.search.validity import JointState, mark_left
@@ -55,13 +55,13 @@ def test_dashpots_along_the_face_leave_out_what_holds(d, secant):
     """A bond whose dashpots wait for cracks has them on the share of its stiffness that has cracked."""
     whole, _ = bonded_line(d, 0, -0.001, secant=secant)
     line, bond = whole.lines[0], whole.laws[0].rows[0]
-    meet = contact.where_friction_rubs(met(whole))
-    slip = friction.along_face(meet.normal, contact.relative_velocity(whole.bodies, line, whole.supports, meet))
-    drags = []
+    meet = faces.where_friction_rubs(met(whole))
+    slip = friction.along_face(meet.normal, faces.relative_velocity(whole.bodies, line, whole.supports, meet))
+    stretch, drags = friction.stretched(whole.bodies, line.face, bond.grip, meet.normal, H * np.array(slip)), []
     for undamped in (0.0, 1.0):
         twin = copy_of(bond)
         twin.undamped = undamped
-        drags.append(np.array(bonds.slide(system(d).bodies, line, twin, meet.normal, slip, 1e5, H)[0]))
+        drags.append(np.array(bonds.slide(system(d).bodies, line, twin, stretch, slip, 1e5)[0]))
     expected = C_SHEAR * secant / K * np.array(slip)
     np.testing.assert_allclose(drags[1] - drags[0], expected, rtol=1e-9, atol=1e-9 * np.abs(drags[0]).max())
 
@@ -75,8 +75,8 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     state = {"gap": last, "push": 80.0, "pressed": 7.0, "dragged": before, "grip": before / 1500.0}
     whole, normal = bonded_line(d, face, gap, **state, undamped=undamped)
     line, bond, bodies = whole.lines[0], whole.laws[0].rows[0], whole.bodies
-    meet = contact.where_friction_rubs(met(whole))
-    velocity = contact.relative_velocity(bodies, line, whole.supports, meet)
+    meet = faces.where_friction_rubs(met(whole))
+    velocity = faces.relative_velocity(bodies, line, whole.supports, meet)
     rate, slip = normal @ velocity, friction.along_face(meet.normal, velocity)
     twin, other = copy_of(bond), system(d)
     tear(twin, gap)
@@ -84,7 +84,8 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     pressed = -(1 - undamped) * C * twin.secant / K * rate
     pulled = pressed - twin.secant * gap
     dry = max(-rest * gap - C * rest / K * rate, 0.0) if gap < 0 else 0.0
-    drag, taken = bonds.slide(other.bodies, line, twin, meet.normal, slip, pulled + dry, H)
+    stretch = friction.stretched(other.bodies, line.face, bond.grip, meet.normal, H * np.array(slip))
+    drag, taken = bonds.slide(other.bodies, line, twin, stretch, slip, pulled + dry)
     kept = books(whole)
     whole.laws[0].act(whole, kept, 0.0, H)
     assert bond.secant == pytest.approx(twin.secant, rel=1e-9)
@@ -148,8 +149,8 @@ def test_a_bond_that_has_torn_keeps_its_secant_and_presses_with_its_line(d):
     )
     line, bond = whole.lines[0], whole.laws[0].rows[0]
     line.k, line.c = K - 3e5, C * (1 - 0.3)
-    meet = contact.where_friction_rubs(met(whole))
-    rate = np.dot(meet.normal, contact.relative_velocity(whole.bodies, line, whole.supports, meet))
+    meet = faces.where_friction_rubs(met(whole))
+    rate = np.dot(meet.normal, faces.relative_velocity(whole.bodies, line, whole.supports, meet))
     bond.grip[:] = 1.0 if d == 2 else matrix(3, 0).T @ (matrix(3, 0) @ ALONG[3])
     whole.laws[0].act(whole, books(whole), 0.0, H)
     assert bond.secant == 3e5
@@ -165,8 +166,8 @@ def test_slip_takes_no_more_than_there_is_to_take(d, face, held):
     """Where crushing limits the force to a ninth of the cohesion, friction pays for nothing."""
     whole, _ = bonded_line(d, face, 0.0, strength=COHESION / 3, residual=0.0, friction_drop=0.0, c=0.0, c_s=0.0)
     line, bond, limit = whole.lines[0], whole.laws[0].rows[0], COHESION / 9
-    meet = contact.where_friction_rubs(met(whole))
-    velocity = contact.relative_velocity(whole.bodies, line, whole.supports, meet)
+    meet = faces.where_friction_rubs(met(whole))
+    velocity = faces.relative_velocity(whole.bodies, line, whole.supports, meet)
     slip = np.array(friction.along_face(meet.normal, velocity))
     way = slip / np.linalg.norm(slip)
     grip = held * limit / K_SHEAR * way
@@ -198,9 +199,9 @@ def test_a_bond_holds_cohesion_and_friction_along_the_face(d, face, push, slides
     trial = 0.004 + slip * H
     stretch = min(trial, limit / K_SHEAR)
     assert bool(stretch < trial) is slides
-    drag, taken = bonds.slide(
-        whole.bodies, line, bond, tuple(normal), (slip,) if d == 2 else tuple(slip * along), push, H
-    )
+    slipped = (slip,) if d == 2 else tuple(slip * along)
+    elongation = friction.stretched(whole.bodies, line.face, bond.grip, tuple(normal), tuple(H * np.array(slipped)))
+    drag, taken = bonds.slide(whole.bodies, line, bond, elongation, slipped, push)
     assert bond.friction == pytest.approx(0.65)
     held = min(K_SHEAR * stretch + C_SHEAR * slip, limit)
     np.testing.assert_allclose(friction.as_vector(tuple(normal), drag), -held * along, rtol=1e-12, atol=1e-10)

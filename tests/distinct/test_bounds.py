@@ -29,7 +29,8 @@ def numbers_beyond(table, i):
     table[i] = 1.0
 
 
-for loop, table in ((rows_beyond, rows(kinds(2).way, 2)), (numbers_beyond, np.zeros(2)), (numbers_beyond, np.zeros(0))):
+some = rows(kinds(2).tangent, 2)
+for loop, table in ((rows_beyond, some), (numbers_beyond, np.zeros(2)), (numbers_beyond, np.zeros(0))):
     try:
         loop(table, len(table))
     except IndexError:

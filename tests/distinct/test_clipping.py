@@ -59,7 +59,6 @@ def test_corners_follow_each_other_around_a_face():
         following = [clipping.next_corner(solids, face, int(solids.first[face]) + i) for i in range(4)]
         np.testing.assert_array_equal(following, np.roll(corners, -1, axis=0))
         assert clipping.normal_of(solids, face) == pytest.approx(UP)
-    assert clipping.length_of((2.0, -1.0, 2.0)) == 3.0
 
 
 def test_the_face_towards_a_direction_has_the_nearest_normal():
@@ -183,7 +182,7 @@ def clipped(*blocks, first=0, size=16, face=0):
     solids = solids_about(*blocks)
     table, room = rows(clipping.PLACE, size), polygon_in([], 24)
     upper = face_of(solids, face, UP)[0]
-    count = clipping.clip(solids, upper, (face, 1 - face), table, first, room)
+    count = clipping.clip(solids, upper, (face, 1 - face), clipping.Workspace(table, room), first)
     return columns(table), count
 
 

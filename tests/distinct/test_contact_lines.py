@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from by_hand import about, books, energy, matrix, system, velocity_at
 
-from mjrock.distinct.contacts import contact, friction, touches
-from mjrock.distinct.contacts.contact import Meeting
+from mjrock.distinct.contacts import contact, faces, friction, touches
+from mjrock.distinct.contacts.faces import Meeting
 from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK
 from mjrock.distinct.thread import add_force
 
@@ -38,7 +38,7 @@ def put_line(whole, face, gap, aside=0.0, number=0, **law):
 
 
 def met(whole, number=0):
-    return contact.meeting(whole, whole.lines[number])
+    return faces.meeting(whole, whole.lines[number])
 
 
 @BOTH
@@ -66,7 +66,7 @@ def test_a_line_is_where_its_bodies_have_it(d, face, gap):
         over = velocity_at(bodies[0], np.array(meet.face_arm))
     elif face != -1:
         over = whole.supports.moving[0]
-    slides = contact.relative_velocity(bodies, whole.lines[0], whole.supports, meet)
+    slides = faces.relative_velocity(bodies, whole.lines[0], whole.supports, meet)
     np.testing.assert_allclose(slides, velocity_at(bodies[1], np.array(meet.arm)) - over, rtol=1e-12)
 
 
@@ -81,7 +81,7 @@ def test_a_force_adds_its_moment_about_the_centroid(d):
 
 @pytest.mark.parametrize(("gap", "moved"), [(-0.2, 0.1), (0.2, 0.0)])
 def test_friction_rubs_halfway_into_the_overlap(gap, moved):
-    meet = contact.where_friction_rubs(Meeting(gap, (0.6, 0.8), (1.0, 2.0), (-1.0, 0.5), False))
+    meet = faces.where_friction_rubs(Meeting(gap, (0.6, 0.8), (1.0, 2.0), (-1.0, 0.5), False))
     assert meet.gap == gap
     np.testing.assert_allclose(meet.arm, np.add([1.0, 2.0], np.multiply(moved, [0.6, 0.8])))
     np.testing.assert_allclose(meet.face_arm, np.add([-1.0, 0.5], np.multiply(moved, [0.6, 0.8])))
@@ -96,7 +96,7 @@ def ended(d, face, over, *, within=1.0, gap=-0.003, band=0.5):
     for edge, way, place, reach in zip(
         whole.edges, [ALONG[d], -ALONG[d]] * 2, [ORIGIN[d]] * 2 + [AT[d]] * 2, [0.05, 1.0, within, within], strict=True
     ):
-        edge.way, edge.reach, edge.band = way, way @ place + reach, band
+        edge.normal, edge.reach, edge.band = way, way @ place + reach, band
     return whole, normal
 
 
@@ -122,8 +122,8 @@ def test_the_end_of_a_face_presses_on_the_face_of_the_block_above(d, face, over,
 @BOTH
 def test_past_the_end_of_both_faces_nothing_is_left(d):
     meet = met(ended(d, 0, 0.02, within=0.001)[0])
-    assert (meet.gap, meet.past) == (contact.GAP_OF_OPEN, True)
-    assert contact.GAP_OF_OPEN > 0.1
+    assert (meet.gap, meet.past) == (faces.GAP_OF_OPEN, True)
+    assert faces.GAP_OF_OPEN > 0.1
 
 
 @BOTH
@@ -154,10 +154,10 @@ def test_faces_that_are_turned_away_from_each_other_do_not_press(d, turned):
         line.normal = NORMAL[2]
     line.between = -0.003 * line.normal * (-1.0 if turned == 0 else 1.0)
     meet = met(whole)
-    assert (meet.gap, meet.past) == (contact.TURNED_OVER, True)
+    assert (meet.gap, meet.past) == (faces.TURNED_OVER, True)
     line.margin = math.inf  # a line of a place that was found has no end
     assert (met(whole).gap, met(whole).past) == (pytest.approx(-0.003), False)
-    assert contact.TURNED_OVER > contact.GAP_OF_OPEN
+    assert faces.TURNED_OVER > faces.GAP_OF_OPEN
 
 
 LAW = Meeting(0.0, (0.0, 1.0), (0.0, 0.0), (0.0, 0.0), False)
@@ -194,8 +194,8 @@ def moving_line(d, face, gap, *, was=0.002, push=150.0, number=0, whole=None, **
     whole = system(d) if whole is None else whole
     law = {"k": K, "c": C, "depth": was, "push": push, "pressed": 7.0, "rate": -0.1, "group": 1} | law
     normal = put_line(whole, face, gap, number=number, **law)
-    meet = contact.where_friction_rubs(met(whole, number))
-    over = contact.relative_velocity(whole.bodies, whole.lines[number], whole.supports, meet)
+    meet = faces.where_friction_rubs(met(whole, number))
+    over = faces.relative_velocity(whole.bodies, whole.lines[number], whole.supports, meet)
     rate = normal @ over
     return whole, meet, rate, over - rate * normal
 
@@ -262,12 +262,12 @@ def test_lines_that_stick_rigidly_are_listed(d):
     kept, counts = pressed(whole)
     assert counts == (2, 0)
     assert list(kept.active[:2]) == [1, 2]
-    ways = whole.ways
+    ways = whole.tangents
     np.testing.assert_array_equal(ways["face"][: 2 * (d - 1)], np.repeat([0, -1], d - 1))
     np.testing.assert_allclose(ways["limit"][0], KICK * 0.5 * max(200.0 - C * rate, 0.0), rtol=1e-9)
     np.testing.assert_allclose(ways["limit"][d - 1], KICK * 0.25 * whole.lines["push"][2], rtol=1e-9)
-    np.testing.assert_allclose(ways["lever"][0], about(meet.arm, ways["way"][0]), rtol=1e-9)
-    np.testing.assert_allclose(ways["lever_on_face"][0], about(meet.face_arm, ways["way"][0]), rtol=1e-9)
+    np.testing.assert_allclose(ways["lever"][0], about(meet.arm, ways["direction"][0]), rtol=1e-9)
+    np.testing.assert_allclose(ways["lever_on_face"][0], about(meet.face_arm, ways["direction"][0]), rtol=1e-9)
 
 
 @BOTH
@@ -366,8 +366,8 @@ def test_what_a_line_loses_past_its_end_is_booked(d):
         line = whole.lines[0]
         line.k, line.c, line.depth, line.push, line.past = K, C, 0.004, 400.0, before
         meet = met(whole)
-        rub = contact.where_friction_rubs(meet)
-        rate = np.dot(meet.normal, contact.relative_velocity(whole.bodies, line, whole.supports, rub))
+        rub = faces.where_friction_rubs(meet)
+        rate = np.dot(meet.normal, faces.relative_velocity(whole.bodies, line, whole.supports, rub))
         lost = contact.lost_past_face_edge(line, meet, H * rate)
         kept, _ = pressed(whole)
         assert lost != 0
@@ -408,7 +408,7 @@ def test_springs_do_the_work_of_their_touch(d, face):
     taken, put_in = contact.settle_touches(whole, kept, 2, KICK)
     struck = kept.impulse[:2]
     left = [
-        normal @ contact.relative_velocity(whole.bodies, whole.lines[i], whole.supports, met(whole, i)) for i in (1, 2)
+        normal @ faces.relative_velocity(whole.bodies, whole.lines[i], whole.supports, met(whole, i)) for i in (1, 2)
     ]
     for i in (1, 2):
         whole.lines[i].due = (0.0, 0.02, -0.03)[i]

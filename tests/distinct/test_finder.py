@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 import mjrock as mr
 from mjrock.distinct.rows import rows
 from mjrock.distinct.search import finder
-from mjrock.distinct.search.clipping import PLACE
+from mjrock.distinct.search.clipping import PLACE, Workspace
 from mjrock.distinct.search.finder import ContactPlaces, Finder, Near
 from mjrock.distinct.search.solids import Poses, Solids
 
@@ -171,18 +171,18 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
     out = {2: -0.4, 3: -0.9, 7: -0.5, 8: -0.6, 11: 0.0}
     asked = []
 
-    def clip(_, face, blocks, table, count, room):
+    def clip(_, face, blocks, work, count):
         asked.append((face, blocks))
         if depth[face] is None:
             return count
-        table[count].at, table[count].gap = 0.0, depth[face]
+        work.places[count].at, work.places[count].gap = 0.0, depth[face]
         return count + 1
 
     monkeypatch.setattr(finder, "clip", clip)
     monkeypatch.setattr(finder, "distance_outside", lambda _, face, other: out.get(face, -2.0))
     monkeypatch.setattr(finder, "lies_in", lambda _, block, at, slack: True)
     monkeypatch.setattr(finder, "height", lambda _, face, at: heights.get(face, 0.0))
-    table, heights = rows(PLACE, 3), {}
+    work, heights = Workspace(rows(PLACE, 3), None), {}
     for least, expected, more in (
         (-0.3, (0, (0, 1), -0.5), []),
         (-0.45, (2, (0, 1), -0.1), [(2, (0, 1))]),
@@ -191,29 +191,29 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
         (-0.7, (8, (1, 0), -0.01), [(2, (0, 1)), (7, (1, 0)), (8, (1, 0))]),
     ):
         asked.clear()
-        assert finder.shallowest(solids, 0, (0, 1), least, table, 1, None) == expected
+        assert finder.shallowest(solids, 0, (0, 1), least, work, 1) == expected
         assert asked == [(0, (0, 1)), *more]
     depth[8] = depth[2]  # of two that are as deep the first one
-    assert finder.shallowest(solids, 0, (0, 1), -0.7, table, 1, None) == (2, (0, 1), -0.1)
+    assert finder.shallowest(solids, 0, (0, 1), -0.7, work, 1) == (2, (0, 1), -0.1)
     asked.clear()  # from a face of the other block
-    assert finder.shallowest(solids, 7, (1, 0), -0.45, table, 1, None) == (2, (0, 1), -0.1)
+    assert finder.shallowest(solids, 7, (1, 0), -0.45, work, 1) == (2, (0, 1), -0.1)
     assert asked == [(7, (1, 0)), (2, (0, 1))]
     for deep, taken in ((-0.36, 0), (-0.34, 2)):
         depth[2] = deep
-        assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None) == (taken, (0, 1), depth[taken])
+        assert finder.shallowest(solids, 0, (0, 1), -0.45, work, 1) == (taken, (0, 1), depth[taken])
     depth[2] = -0.1
     for above, taken in ((-0.09, 2), (-0.11, 0)):  # the deepest place of the first face lies so deep below this one
         heights[2] = above
-        assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == taken
+        assert finder.shallowest(solids, 0, (0, 1), -0.45, work, 1)[0] == taken
     monkeypatch.setattr(finder, "lies_in", lambda _, block, at, slack: block != 1)  # that place is not common to both
-    assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == 2
+    assert finder.shallowest(solids, 0, (0, 1), -0.45, work, 1)[0] == 2
     for gap, taken in ((-0.001, 2), (0.0, 0), (0.001, 0)):  # places that are open
         depth[2] = gap
-        assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None)[0] == taken
+        assert finder.shallowest(solids, 0, (0, 1), -0.45, work, 1)[0] == taken
     depth[0], depth[2] = None, 0.001
-    assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None) == (2, (0, 1), 0.001)
+    assert finder.shallowest(solids, 0, (0, 1), -0.45, work, 1) == (2, (0, 1), 0.001)
     depth[2] = None
-    assert finder.shallowest(solids, 0, (0, 1), -0.45, table, 1, None) == (0, (0, 1), -math.inf)
+    assert finder.shallowest(solids, 0, (0, 1), -0.45, work, 1) == (0, (0, 1), -math.inf)
 
 
 def decided(
@@ -246,14 +246,14 @@ def decided(
         "edge_separation": lambda _, a, b: ((0.0, 0.0, 1.0), across),
         "write_edges": lambda _, blocks, way, far, table, count: ("edges", blocks, way, far),
         "with_whole_sides": lambda solids: solids,
-        "clip": lambda _, face, blocks, table, count, room: met.append(("faces", face, blocks)) or count + clipped,
+        "clip": lambda _, face, blocks, work, count: met.append(("faces", face, blocks)) or count + clipped,
         "write_near_corner": lambda _, face, blocks, gap, table, count: (
             met.append(("passes", face, blocks, gap)) or count + 1
         ),
     }.items():
         monkeypatch.setattr(finder, name, what)
     solids = SimpleNamespace(extent=dict(zip(faces, outlines, strict=True)))
-    count = finder.find_pair(solids, reach, (0, 1), range(rows), 7, range(4))
+    count = finder.find_pair(solids, reach, (0, 1), (1, 1), Workspace(range(rows), range(4)), 7)
     return met[-1] if met else count, *sought
 
 

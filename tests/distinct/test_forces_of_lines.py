@@ -7,7 +7,7 @@ import pytest
 from by_hand import about, books, matrix, system
 
 from mjrock.distinct import force_record
-from mjrock.distinct.contacts import contact
+from mjrock.distinct.contacts import faces
 from mjrock.distinct.kinds.mortar import Bonds
 from mjrock.distinct.system import Samples
 
@@ -52,7 +52,7 @@ def acting(whole, p, push, friction):
     line, d = whole.lines[p], len(whole.axes)
     turn = matrix(d, 0) if line.face == 0 else np.eye(d)
     drag = friction * (turn @ ALONG[2] if d == 2 else ALONG[3])  # springs of space are kept in the axes of the world
-    meet = contact.where_friction_rubs(contact.meeting(whole, line))
+    meet = faces.where_friction_rubs(faces.meeting(whole, line))
     return push * np.array(meet.normal) + drag, np.array(meet.arm), np.array(meet.face_arm)
 
 

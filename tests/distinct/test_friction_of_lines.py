@@ -7,6 +7,7 @@ import pytest
 from by_hand import MOVING, about, energy, matrix, system, velocity_at
 
 from mjrock.distinct.contacts import friction
+from mjrock.distinct.contacts.faces import Meeting
 from mjrock.distinct.system import Books
 from mjrock.geometry.vectors import tangent, tangents
 
@@ -25,7 +26,7 @@ def tangential(d):
 def listed(whole, line, first, arms, slip, h=0.0):
     """Prepare the friction of a line in all its directions. In a step that is no time bodies turn by nothing."""
     normal = NORMAL[len(whole.axes)]
-    friction.list_rigid(whole, line, first, tuple(normal), tuple(map(tuple, arms)), tuple(slip), h)
+    friction.list_rigid(whole, line, first, Meeting(0.0, tuple(normal), *map(tuple, arms), False), tuple(slip), h)
 
 
 def rigid(d, on_face=True, held=1e6):
@@ -49,7 +50,7 @@ def slip_of(whole, on_face=True):
 def compliances(whole, on_face=True):
     """Slip along the ways that unit impulses along them make, shape (d - 1, d - 1)."""
     d = len(whole.axes)
-    ways, found = whole.ways["way"], np.zeros((d - 1, d - 1))
+    ways, found = whole.tangents["direction"], np.zeros((d - 1, d - 1))
     for body, arm in ((1, ARM[d]), (0, OTHER[d]))[: 2 if on_face else 1]:
         each = whole.bodies[body]
         inverse = each.inverse_inertia if d == 2 else each.inverse_in_world
@@ -161,7 +162,7 @@ def test_a_body_that_a_guide_holds_hardly_yields():
 @pytest.mark.parametrize("on_face", [True, False])
 def test_the_ways_of_a_rigid_line_know_what_an_impulse_does(d, on_face):
     whole = rigid(d, on_face)
-    ways, found = whole.ways, compliances(whole, on_face)
+    ways, found = whole.tangents, compliances(whole, on_face)
     assert (ways["body"] == 1).all()
     assert (ways["face"] == (0 if on_face else -1)).all()
     assert (ways["support"] == (-1 if on_face else 0)).all()
@@ -170,7 +171,7 @@ def test_the_ways_of_a_rigid_line_know_what_an_impulse_does(d, on_face):
     np.testing.assert_allclose(ways["stiffness"], np.diag(stops), rtol=1e-13)
     slip = slip_of(whole, on_face)
     slips = [friction.slip_along(whole, row) for row in ways]
-    np.testing.assert_allclose(slips, ways["way"] @ slip, rtol=1e-13)
+    np.testing.assert_allclose(slips, ways["direction"] @ slip, rtol=1e-13)
     if d == 3:
         assert ways["coupling"][0] == pytest.approx(found[0, 1])
         assert ways["shared"][0] == pytest.approx(-stops[0, 1])
@@ -190,19 +191,21 @@ def test_a_rigid_line_begins_with_the_friction_of_the_last_step(d, on_face, held
     line, way = whole.lines[0], tangential(d)
     line.grip[:] = 4.0 if d == 2 else 4.0 * (matrix(3, 0).T @ way if on_face else way)
     friction.begin(whole, line, 0, held, KICK, whole.axes)
-    np.testing.assert_allclose(whole.ways["impulse"] @ whole.ways["way"], KICK * size * way, rtol=1e-12, atol=1e-16)
-    assert (whole.ways["limit"] == KICK * held).all()
+    np.testing.assert_allclose(
+        whole.tangents["impulse"] @ whole.tangents["direction"], KICK * size * way, rtol=1e-12, atol=1e-16
+    )
+    assert (whole.tangents["limit"] == KICK * held).all()
 
 
 @BOTH
 @pytest.mark.parametrize("on_face", [True, False])
 def test_a_line_stops_its_slip_where_the_face_holds_it(d, on_face):
     whole = rigid(d, on_face)
-    whole.ways["impulse"] = 0.1 * np.arange(1, d)
-    before = whole.ways["impulse"].copy()
+    whole.tangents["impulse"] = 0.1 * np.arange(1, d)
+    before = whole.tangents["impulse"].copy()
     changed = friction.stop(whole, 0, whole.axes)
     np.testing.assert_allclose(slip_of(whole, on_face), 0.0, atol=1e-14)
-    assert changed == pytest.approx(np.abs(whole.ways["impulse"] - before).max())
+    assert changed == pytest.approx(np.abs(whole.tangents["impulse"] - before).max())
     assert changed > 0.1
 
 
@@ -218,15 +221,15 @@ def test_a_line_stops_its_slip_in_the_middle_of_the_step(d, on_face):
         for sign, body, arm in ((1, whole.bodies[1], ARM[d]), (-1, whole.bodies[0], OTHER[d]))[: 1 + on_face]:
             turning = velocity_at(body, arm) - body.velocity
             slip = slip + sign * velocity_at(body, arm + turned * turning)
-        return whole.ways["way"] @ slip
+        return whole.tangents["direction"] @ slip
 
     listed(whole, whole.lines[0], 0, (ARM[d], OTHER[d]), slip_of(whole, on_face), h)
     late, early = slip_with_arms(0.5 * h), slip_with_arms(-0.5 * h)
-    np.testing.assert_allclose(whole.ways["drift"], 0.5 * (late - early), rtol=1e-9)
-    assert np.abs(whole.ways["drift"]).min() > 1e-5
-    whole.ways["limit"] = 1e6
+    np.testing.assert_allclose(whole.tangents["drift"], 0.5 * (late - early), rtol=1e-9)
+    assert np.abs(whole.tangents["drift"]).min() > 1e-5
+    whole.tangents["limit"] = 1e6
     friction.stop(whole, 0, whole.axes)
-    np.testing.assert_allclose(slip_with_arms(0.0), -whole.ways["drift"], atol=1e-14)
+    np.testing.assert_allclose(slip_with_arms(0.0), -whole.tangents["drift"], atol=1e-14)
 
 
 @BOTH
@@ -237,10 +240,10 @@ def test_a_line_stops_its_slip_where_the_face_just_holds_it(d):
             whole = rigid(d)
             for name in ("velocity", "spin"):
                 whole.bodies[name] *= slower
-            whole.ways["limit"] = held
+            whole.tangents["limit"] = held
             friction.stop(whole, 0, whole.axes)
             np.testing.assert_allclose(slip_of(whole), 0.0, atol=1e-14)
-            held = 1.0001 * np.linalg.norm(whole.ways["impulse"])
+            held = 1.0001 * np.linalg.norm(whole.tangents["impulse"])
 
 
 @BOTH
@@ -248,12 +251,12 @@ def test_a_line_that_slips_has_what_the_face_holds(d):
     whole = rigid(d, held=20.0)
     slip = slip_of(whole)
     friction.stop(whole, 0, whole.axes)
-    impulse, slid = whole.ways["impulse"] @ whole.ways["way"], slip_of(whole)
+    impulse, slid = whole.tangents["impulse"] @ whole.tangents["direction"], slip_of(whole)
     assert np.linalg.norm(impulse) == pytest.approx(20.0 * KICK)
     assert np.linalg.norm(slid) < np.linalg.norm(slip)
     for _ in range(200):
         friction.stop(whole, 0, whole.axes)
-    impulse, slid = whole.ways["impulse"] @ whole.ways["way"], slip_of(whole)
+    impulse, slid = whole.tangents["impulse"] @ whole.tangents["direction"], slip_of(whole)
     np.testing.assert_allclose(impulse, -20.0 * KICK * slid / np.linalg.norm(slid), rtol=1e-9, atol=1e-12)
 
 
@@ -264,18 +267,18 @@ def test_the_step_towards_sliding_is_that_of_the_loosest_direction():
     listed(whole, whole.lines[0], 0, (ARM[3], OTHER[3]), slip_of(whole))
     values, directions = np.linalg.eigh(compliances(whole))
     loosest, slip = values[-1], directions @ [0.9, 0.3]  # mostly along the other one
-    whole.bodies["velocity"][1] += (slip - whole.ways["way"] @ slip_of(whole)) @ whole.ways["way"]
+    whole.bodies["velocity"][1] += (slip - whole.tangents["direction"] @ slip_of(whole)) @ whole.tangents["direction"]
     stopping = np.linalg.norm(np.linalg.solve(compliances(whole), slip))
     step = -slip / loosest
     assert np.linalg.norm(step) < 0.8 * stopping
     between = 0.5 * (np.linalg.norm(step) + stopping)
     for limit, expected in ((between, step), (0.5 * between, 0.5 * between * step / np.linalg.norm(step))):
-        whole.ways["limit"] = limit
+        whole.tangents["limit"] = limit
         np.testing.assert_allclose(friction.stopping(whole, 0, whole.axes), expected, rtol=1e-12)
-    whole.ways["impulse"] = [0.02, -0.05]
+    whole.tangents["impulse"] = [0.02, -0.05]
     expected = np.array([0.02, -0.05]) - slip / loosest
     expected *= min(1.0, 0.3 * between / np.linalg.norm(expected))
-    whole.ways["limit"] = 0.3 * between
+    whole.tangents["limit"] = 0.3 * between
     np.testing.assert_allclose(friction.stopping(whole, 0, whole.axes), expected, rtol=1e-12)
 
 
@@ -295,14 +298,14 @@ def many(d, held, count=7):
 def test_lines_stick_together_and_keep_their_friction(d, held):
     """Where the face holds all of it, the friction stops every slip; it takes energy where it does not."""
     whole, active = many(d, held, 2 if held > 100 else 7)
-    before, slips = energy(whole.bodies), [friction.slip_along(whole, row) for row in whole.ways]
+    before, slips = energy(whole.bodies), [friction.slip_along(whole, row) for row in whole.tangents]
     momentum = whole.bodies["momentum"].copy() if d == 3 else None
     friction.stick(whole, active, len(active), KICK)
-    after = [friction.slip_along(whole, row) for row in whole.ways]
-    impulses = whole.ways["impulse"].reshape(-1, d - 1)
+    after = [friction.slip_along(whole, row) for row in whole.tangents]
+    impulses = whole.tangents["impulse"].reshape(-1, d - 1)
     np.testing.assert_array_less(np.linalg.norm(impulses, axis=1), KICK * held * (1 + 1e-12))
     grips = whole.lines["grip"]
-    pushed = np.einsum("ij,ijk->ik", impulses, whole.ways["way"].reshape(len(active), d - 1, d))
+    pushed = np.einsum("ij,ijk->ik", impulses, whole.tangents["direction"].reshape(len(active), d - 1, d))
     on_face = whole.lines["face"] >= 0
     turned = grips[on_face] if d == 2 else grips[on_face] @ matrix(3, 0).T
     along = pushed if d == 3 else impulses
@@ -310,8 +313,8 @@ def test_lines_stick_together_and_keep_their_friction(d, held):
     np.testing.assert_allclose(grips[~on_face], along[~on_face] / KICK, rtol=1e-12, atol=1e-12)
     if held > 100:
         assert np.abs(after).max() < 0.02 * np.abs(slips).max()
-    supports = 0.5 * (np.array(slips) + after) @ whole.ways["impulse"]
-    carried = sum(row.impulse * friction.carried(row, whole.supports, tuple(row.way)) for row in whole.ways)
+    supports = 0.5 * (np.array(slips) + after) @ whole.tangents["impulse"]
+    carried = sum(row.impulse * friction.carried(row, whole.supports, tuple(row.direction)) for row in whole.tangents)
     assert energy(whole.bodies) - before == pytest.approx(supports + carried, rel=1e-9)
     assert supports < 0
     if d == 3:
@@ -353,7 +356,7 @@ def test_a_slow_motion_has_its_impulses_as_exactly_as_a_fast_one(d):
             whole.bodies[name] *= scale
         whole.supports.moving[:] *= scale
         friction.stick(whole, active, 7, KICK)
-        impulses.append(whole.ways["impulse"] / scale)
+        impulses.append(whole.tangents["impulse"] / scale)
     np.testing.assert_array_equal(*impulses)
 
 
@@ -363,12 +366,12 @@ def test_the_work_of_rigid_friction_is_booked(d, on_face):
     """With impulses along the mean of the slips, the work is what the bodies lose and the support puts in."""
     whole = rigid(d, on_face, held=20.0)
     books, before = Books.empty(whole, 1), energy(whole.bodies)
-    first = np.array([friction.slip_along(whole, row) for row in whole.ways])
+    first = np.array([friction.slip_along(whole, row) for row in whole.tangents])
     friction.stop(whole, 0, whole.axes)
     rubbed, put_in = friction.book_rubbing(whole, books, 1)
-    total, impulses = books.totals[0], whole.ways["impulse"]
+    total, impulses = books.totals[0], whole.tangents["impulse"]
     assert total.ground - total.friction == pytest.approx(energy(whole.bodies) - before, rel=1e-12)
-    carried = 0.0 if on_face else impulses @ whole.ways["way"] @ whole.supports.moving[0]
+    carried = 0.0 if on_face else impulses @ whole.tangents["direction"] @ whole.supports.moving[0]
     assert total.ground == pytest.approx(carried)
     assert (rubbed, put_in) == pytest.approx((-0.5 * impulses @ first, 0.5 * carried))
     friction.book_rubbing(whole, books, 1)

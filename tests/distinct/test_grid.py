@@ -101,7 +101,7 @@ def laid(upper, cells, size=99):
     """Places of a block that lies over the upper face of another one."""
     solids, table = solids_about(LOWER, upper), rows(clipping.PLACE, size)
     count = clipping.clip_in_grid(
-        solids, clipping.face_towards(solids, 0, UP), (0, 1), cells, table, 1, polygon_in([], 32)
+        solids, clipping.face_towards(solids, 0, UP), (0, 1), cells, clipping.Workspace(table, polygon_in([], 32)), 1
     )
     return columns(table), count
 

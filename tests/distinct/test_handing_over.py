@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from by_hand import ANGLES, PLACE, REST, TURNS, matrix, system
 
-from mjrock.distinct.contacts import contact
+from mjrock.distinct.contacts import faces
 from mjrock.distinct.contacts.touches import FIRST_OPENING
 from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK, kinds, rows
 from mjrock.distinct.search import handover
@@ -85,7 +85,7 @@ def test_a_line_is_where_its_place_was_found(d, face, other, slack):
     """Its gap is that of the place less what presses nothing, and its points are half a gap to either side."""
     whole = written(d, face, other, slack=slack)
     line, numbers = whole.lines[0], blocks(d)
-    meet = contact.meeting(whole, line)
+    meet = faces.meeting(whole, line)
     assert meet.gap == pytest.approx(-0.004 + slack, rel=1e-10)
     point = other == 0  # the corner of a fixed block meets the face of a body
     carries, faced = (face, other) if point else (other, face)

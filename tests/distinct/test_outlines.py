@@ -47,10 +47,10 @@ def test_the_outlines_of_a_joint_in_space_are_the_two_whole_faces():
         np.testing.assert_allclose(outline.normal, [0.0, 0.0, normal], atol=1e-12)
         middle = outline.corners.mean(axis=0)
         following = np.roll(outline.corners, -1, axis=0)
-        for way, start, end in zip(outline.edge_normals, outline.corners, following, strict=True):
-            assert way @ way == pytest.approx(1.0)
-            assert way @ (start - middle) == pytest.approx(way @ (end - middle))
-            assert way @ (start - middle) > 0
+        for outwards, start, end in zip(outline.edge_normals, outline.corners, following, strict=True):
+            assert outwards @ outwards == pytest.approx(1.0)
+            assert outwards @ (start - middle) == pytest.approx(outwards @ (end - middle))
+            assert outwards @ (start - middle) > 0
 
 
 def outline(width, middle=0.0):
@@ -66,7 +66,7 @@ def test_a_face_is_longer_by_a_share_of_the_shorter_one(other, shorter, centroid
     edges, _ = faces.edges_of([outline(2.0, 7.0)], np.array([[centroid, 1.0]]), [outline(other, 7.3)])
     np.testing.assert_allclose(edges["reach"], np.add([centroid - 6, 8 - centroid], 0.02 * shorter), rtol=1e-12)
     np.testing.assert_allclose(edges["band"], 0.02 * shorter + 2 * 0.02**2 * shorter, rtol=1e-12)
-    np.testing.assert_array_equal(edges["way"], [[-1.0, 0.0], [1.0, 0.0]])
+    np.testing.assert_array_equal(edges["normal"], [[-1.0, 0.0], [1.0, 0.0]])
 
 
 def polygon(corners, size):
@@ -88,11 +88,11 @@ def test_faces_of_many_outlines_have_the_edges_of_each_alone():
 
 def square(reach=1.0, band=0.5):
     """Edges of a square about the centroid of a block, and one more that is none of it."""
-    ways = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]
-    return rows(kinds(3).edge, 5, way=[*ways, [0.0, 0.0, 1.0]], reach=[reach] * 4 + [-9.0], band=[band] * 5)
+    normals = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]
+    return rows(kinds(3).edge, 5, normal=[*normals, [0.0, 0.0, 1.0]], reach=[reach] * 4 + [-9.0], band=[band] * 5)
 
 
-def test_the_least_way_of_a_line_to_its_end():
+def test_the_least_distance_of_a_line_from_the_end_of_its_face():
     lines = rows(kinds(3).line, 3, first=[0, 0, 4], last=[4, 4, 5])
     lines["origin"] = [[0.7, -0.2, 5.0], [-1.5, 0.0, 0.0], [0.0, 0.0, -12.0]]
     np.testing.assert_allclose(faces.margins(lines, square()), [0.09, 0.0, 9.0])
@@ -118,13 +118,13 @@ def test_places_beside_a_face_are_pulled_to_its_outline(place, inside, share):
 
 def test_at_a_sharp_corner_the_search_goes_round():
     """What one edge has pulled inside may lie beyond another one then. How far it is beyond counts at the start."""
-    ways = np.array([[1.0, 0.0, 0.0], [-0.6, 0.8, 0.0]])
-    edges = rows(kinds(3).edge, 2, way=ways, reach=[1.0, 0.0], band=[0.1, 1.0])
+    normals = np.array([[1.0, 0.0, 0.0], [-0.6, 0.8, 0.0]])
+    edges = rows(kinds(3).edge, 2, normal=normals, reach=[1.0, 0.0], band=[0.1, 1.0])
     found, share = faces.pulled_inside(edges, 0, 2, (1.0, 1.0, 0.0))
     place = np.array([1.0, 1.0])
     for _ in range(faces.ROUNDS):
-        for way, reach in zip(ways[:, :2], (1.0, 0.0), strict=True):
-            place = place - max(way @ place - reach, 0.0) * way
+        for normal, reach in zip(normals[:, :2], (1.0, 0.0), strict=True):
+            place = place - max(normal @ place - reach, 0.0) * normal
     np.testing.assert_allclose(found, [*place, 0.0], rtol=1e-12)
-    assert ways[0, :2] @ place - 1.0 < 0.36**2 * 0.12 * (1 + 1e-9)
+    assert normals[0, :2] @ place - 1.0 < 0.36**2 * 0.12 * (1 + 1e-9)
     assert share == pytest.approx(0.2)

@@ -1,1 +1,1 @@
-"""The force of a contact line: normal, along the face, and of mortar, with what happens inside a step."""
+"""Contact lines: their faces, the forces along normals and faces, and what happens inside a step."""

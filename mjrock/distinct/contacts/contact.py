@@ -1,135 +1,27 @@
-"""A contact line at a pose: where it presses, how fast, and with what force.
+"""The forces of contact lines at a pose.
 
 The force along the normal is that of `joint_law`. The dashpot takes the velocity half a step before the pose. Along the
 face a spring with a slider acts, or the line sticks rigidly, see `friction`.
-
-A line beyond the outline of its face has moved past an end of it. The nearest point of the outline then presses on the
-face of the block that carries the line. Past the outline of that face too the contact has no force, and it has none
-once the two faces are turned away from each other. A line that the contact search has found has no end.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from ...compiled import inlined
-from ...geometry.vectors import Vector, dot, minus, no_spin, plus, put, read, scaled, spun, vector
+from ...geometry.vectors import dot, no_spin, plus, put, read, scaled
 from ...problem.masonry.laws.joint_law import normal_force, shear_limit, stored
-from ..rotation import apply_impulse_at, in_body, in_world, may_face_away, rotation_change
-from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
-from ..supports import Supports
+from ..rotation import apply_impulse_at
+from ..rows import Row
 from ..system import Books, System
 from ..thread import press_apart
-from .faces import is_beside, pulled_inside
+from .faces import TURNED_OVER, Meeting, meeting, relative_velocity, where_friction_rubs
 from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction, turned_along
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
 
-GAP_OF_OPEN = 1.0
-"""Gap of a line that has left its face [m]."""
-TURNED_OVER = 2 * GAP_OF_OPEN
-"""Gap of a line whose block has turned over [m]. The contact does not close again."""
 TOUCH_PASSES = 3
 """Passes over the lines that touched in a step, which change the rates of each other. A pass reads the rates of all
 lines before it applies an impulse to any, so that their order does not matter."""
-
-
-class Meeting(NamedTuple):
-    """A line at a pose.
-
-    Args:
-        gap: [m].
-        normal: out of the face.
-        arm: from the centroid of the body to the line [m].
-        face_arm: from the centroid of the body of the face to the line [m]; of a fixed block no arm is taken.
-        past: whether the line is past the end of the face.
-    """
-
-    gap: float
-    normal: Vector
-    arm: Vector
-    face_arm: Vector
-    past: bool
-
-
-@inlined
-def position_over_face(system: System, line: Row) -> tuple[Vector, Vector, Vector, Vector]:
-    """Position of the point of a line relative to its face, the normal of the face, and the arms, see `Meeting`."""
-    body, at, normal = system.bodies[line.body], read(line.at), read(line.normal)
-    change = rotation_change(body, at)
-    arm, offset = plus(at, change), plus(read(line.between), plus(read(body.place), change))
-    face_arm = arm
-    if line.face >= 0:
-        face, origin = system.bodies[line.face], read(line.origin)
-        change = rotation_change(face, origin)
-        offset = minus(offset, plus(read(face.place), change))
-        face_arm = plus(plus(origin, change), offset)
-        normal = plus(normal, rotation_change(face, normal))
-    else:
-        if line.support >= 0:
-            offset = minus(offset, vector(system.supports.moved, line.support, at))
-        if line.face == POINT_ON_FIXED_BLOCK:
-            normal, arm = in_world(body, normal), minus(arm, offset)
-    return offset, normal, arm, face_arm
-
-
-@inlined
-def meeting(system: System, line: Row) -> Meeting:
-    """Where a line is."""
-    body = system.bodies[line.body]
-    offset, normal, arm, face_arm = position_over_face(system, line)
-    gap = dot(normal, offset)
-    if gap < 0 and line.margin < math.inf:
-        turned = may_face_away(body) or (line.face >= 0 and may_face_away(system.bodies[line.face]))
-        if turned and dot(normal, in_world(body, read(line.normal))) < 0:
-            return Meeting(TURNED_OVER, normal, arm, face_arm, True)
-        if dot(offset, offset) - gap * gap > line.margin:
-            return past_face_edge(system, line, offset, Meeting(gap, normal, arm, face_arm, False))
-    return Meeting(gap, normal, arm, face_arm, False)
-
-
-@inlined
-def past_face_edge(system: System, line: Row, offset: Vector, meet: Meeting) -> Meeting:
-    """Where a line is that may have moved past the outline of its face, `offset` from its place there at rest [m]."""
-    fixed = line.face < 0
-    face, body = system.bodies[max(line.face, 0)], system.bodies[line.body]
-    reached = plus(read(line.origin), offset if fixed else in_body(face, offset))
-    inside, share = pulled_inside(system.edges, line.first, line.last, reached)
-    if share == 0:
-        return meet
-    over = minus(reached, inside)
-    from_outline = plus(scaled(meet.gap, meet.normal), over if fixed else in_world(face, over))  # from the outline
-    own = in_world(body, read(line.normal))
-    gap = dot(own, from_outline)
-    along = minus(from_outline, scaled(gap, own))
-    place = minus(read(line.at), in_body(body, along))
-    if is_beside(system.edges, line.own_first, line.own_last, place):
-        gap = GAP_OF_OPEN
-    normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
-    normal = scaled(1 / math.sqrt(dot(normal, normal)), normal)
-    return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along), True)
-
-
-@inlined
-def relative_velocity(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> Vector:
-    """Velocity of the point of a line over the face [m/s]."""
-    body = bodies[line.body]
-    velocity = plus(read(body.velocity), spun(read(body.spin), meet.arm))
-    if line.face >= 0:
-        face = bodies[line.face]
-        of_face = plus(read(face.velocity), spun(read(face.spin), meet.face_arm))
-        velocity = minus(velocity, of_face)
-    elif line.support >= 0:
-        velocity = minus(velocity, vector(supports.moving, line.support, velocity))
-    return velocity
-
-
-@inlined
-def where_friction_rubs(meet: Meeting) -> Meeting:
-    """The same meeting with arms to halfway into the overlap. The force along the normal turns the bodies alike there,
-    and the gap has the same rate."""
-    halfway = scaled(-0.5 * min(meet.gap, 0.0), meet.normal)
-    return Meeting(meet.gap, meet.normal, plus(meet.arm, halfway), plus(meet.face_arm, halfway), meet.past)
 
 
 @inlined
@@ -195,9 +87,7 @@ def press_lines(system: System, books: Books, h: float, kick: float, lead: float
             drag = sprung_friction(bodies, line, meet.normal, slip, push, time_closed(line, meet.gap, rate, h))
         elif line.friction > 0:
             books.active[active] = p
-            list_rigid(
-                system, line, (len(meet.normal) - 1) * active, meet.normal, (meet.arm, meet.face_arm), velocity, kick
-            )
+            list_rigid(system, line, (len(meet.normal) - 1) * active, meet, velocity, kick)
             begin(system, line, (len(meet.normal) - 1) * active, shear_limit(line, push), kick, meet.normal)
             active += 1
         mean = scaled(0.5 * h, plus(last, drag))

@@ -1,17 +1,33 @@
-"""Where a face ends: at two ends in the plane, at the edges of its outline in space. Both are rows of edges."""
+"""Contact lines over their faces: where a line is at a pose, how fast it moves, and where its face ends.
+
+A line beyond the outline of its face has moved past an end of it. The nearest point of the outline then presses on the
+face of the block that carries the line. Past the outline of that face too the contact has no force, and it has none
+once the two faces are turned away from each other. A line that the contact search has found has no end.
+
+A face ends at two ends in the plane, and at the edges of its outline in space. Both are rows of edges.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from ...compiled import inlined
-from ...geometry.vectors import Vector, components, dot, minus, scaled
+from ...geometry.vectors import Vector, components, dot, minus, norm, plus, read, scaled, spun, vector
 from ...problem.wall.rest_geometry import Face
 from ...quantities import Array, Integers
-from ..rows import Rows, kinds, rows
+from ..rotation import in_body, in_world, may_face_away, rotation_change
+from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows, kinds, rows
+from ..supports import Supports
+from ..system import System
 
+GAP_OF_OPEN = 1.0
+"""Gap of a line that has left its face [m]."""
+TURNED_OVER = 2 * GAP_OF_OPEN
+"""Gap of a line whose block has turned over [m]. The contact does not close again."""
 OVERHANG = 0.02
 """Length by which a face is taken to be longer at either end, over the shorter of its length and that of the face that
 it meets [-]. The points of a block that stands flush lie at the very end of the face, and move to and fro there. Over
@@ -46,7 +62,7 @@ def edges_of(faces: Sequence[Face], origins: Array, met: Sequence[Face]) -> tupl
         places = (corners - origins[which][:, None]) @ along  # (faces, corners, edges)
         extent = np.minimum(np.ptp(places, axis=1), np.ptp(others @ along, axis=1))
         of = begin[which][:, None] + np.arange(len(normals[0]))
-        edges["way"][of], edges["reach"][of] = normals, places.max(axis=1) + OVERHANG * extent
+        edges["normal"][of], edges["reach"][of] = normals, places.max(axis=1) + OVERHANG * extent
         edges["band"][of] = OVERHANG * (1 + 2 * OVERHANG) * extent
     return edges, begin
 
@@ -57,7 +73,7 @@ def margins(lines: Rows, edges: Rows) -> Array:
     for count in np.unique(counts):
         which = np.flatnonzero(counts == count)
         of = lines["first"][which][:, None] + np.arange(count)
-        along = (edges["way"][of] @ lines["origin"][which][:, :, None])[:, :, 0]
+        along = (edges["normal"][of] @ lines["origin"][which][:, :, None])[:, :, 0]
         margin[which] = np.maximum((edges["reach"][of] - along).min(axis=1), 0.0)
     return margin**2
 
@@ -67,7 +83,7 @@ def is_beside(edges: Rows, first: int, last: int, place: Vector) -> bool:
     """Whether a place on a body [m] lies beyond the outline of a face of it, whose edges are numbered."""
     beside = False
     for i in range(first, last):
-        if dot(components(edges[i].way, place), place) > edges[i].reach:
+        if dot(components(edges[i].normal, place), place) > edges[i].reach:
             beside = True
     return beside
 
@@ -81,10 +97,108 @@ def pulled_inside(edges: Rows, first: int, last: int, place: Vector) -> tuple[Ve
     for sweep in range(ROUNDS):
         for i in range(first, last):
             edge = edges[i]
-            outwards = components(edge.way, place)
+            outwards = components(edge.normal, place)
             excess = dot(outwards, inside) - edge.reach
             if excess > 0:
                 inside = minus(inside, scaled(excess, outwards))
                 if sweep == 0:
                     share = max(share, excess / edge.band)
     return inside, share
+
+
+class Meeting(NamedTuple):
+    """A line at a pose.
+
+    Args:
+        gap: [m].
+        normal: out of the face.
+        arm: from the centroid of the body to the line [m].
+        face_arm: from the centroid of the body of the face to the line [m]; of a fixed block no arm is taken.
+        past: whether the line is past the end of the face.
+    """
+
+    gap: float
+    normal: Vector
+    arm: Vector
+    face_arm: Vector
+    past: bool
+
+
+@inlined
+def position_over_face(system: System, line: Row) -> tuple[Vector, Vector, Vector, Vector]:
+    """Position of the point of a line relative to its face, the normal of the face, and the arms, see `Meeting`."""
+    body, at, normal = system.bodies[line.body], read(line.at), read(line.normal)
+    change = rotation_change(body, at)
+    arm, offset = plus(at, change), plus(read(line.between), plus(read(body.place), change))
+    face_arm = arm
+    if line.face >= 0:
+        face, origin = system.bodies[line.face], read(line.origin)
+        change = rotation_change(face, origin)
+        offset = minus(offset, plus(read(face.place), change))
+        face_arm = plus(plus(origin, change), offset)
+        normal = plus(normal, rotation_change(face, normal))
+    else:
+        if line.support >= 0:
+            offset = minus(offset, vector(system.supports.moved, line.support, at))
+        if line.face == POINT_ON_FIXED_BLOCK:
+            normal, arm = in_world(body, normal), minus(arm, offset)
+    return offset, normal, arm, face_arm
+
+
+@inlined
+def meeting(system: System, line: Row) -> Meeting:
+    """Where a line is."""
+    body = system.bodies[line.body]
+    offset, normal, arm, face_arm = position_over_face(system, line)
+    gap = dot(normal, offset)
+    if gap < 0 and line.margin < math.inf:
+        turned = may_face_away(body) or (line.face >= 0 and may_face_away(system.bodies[line.face]))
+        if turned and dot(normal, in_world(body, read(line.normal))) < 0:
+            return Meeting(TURNED_OVER, normal, arm, face_arm, True)
+        if dot(offset, offset) - gap * gap > line.margin:
+            return past_face_edge(system, line, offset, Meeting(gap, normal, arm, face_arm, False))
+    return Meeting(gap, normal, arm, face_arm, False)
+
+
+@inlined
+def past_face_edge(system: System, line: Row, offset: Vector, meet: Meeting) -> Meeting:
+    """Where a line is that may have moved past the outline of its face, `offset` from its place there at rest [m]."""
+    fixed = line.face < 0
+    face, body = system.bodies[max(line.face, 0)], system.bodies[line.body]
+    reached = plus(read(line.origin), offset if fixed else in_body(face, offset))
+    inside, share = pulled_inside(system.edges, line.first, line.last, reached)
+    if share == 0:
+        return meet
+    over = minus(reached, inside)
+    from_outline = plus(scaled(meet.gap, meet.normal), over if fixed else in_world(face, over))  # from the outline
+    own = in_world(body, read(line.normal))
+    gap = dot(own, from_outline)
+    along = minus(from_outline, scaled(gap, own))
+    place = minus(read(line.at), in_body(body, along))
+    if is_beside(system.edges, line.own_first, line.own_last, place):
+        gap = GAP_OF_OPEN
+    normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
+    normal = scaled(1 / norm(normal), normal)
+    return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along), True)
+
+
+@inlined
+def relative_velocity(bodies: Rows, line: Row, supports: Supports, meet: Meeting) -> Vector:
+    """Velocity of the point of a line over the face [m/s]."""
+    body = bodies[line.body]
+    velocity = plus(read(body.velocity), spun(read(body.spin), meet.arm))
+    if line.face >= 0:
+        face = bodies[line.face]
+        of_face = plus(read(face.velocity), spun(read(face.spin), meet.face_arm))
+        velocity = minus(velocity, of_face)
+    elif line.support >= 0:
+        velocity = minus(velocity, vector(supports.moving, line.support, velocity))
+    return velocity
+
+
+@inlined
+def where_friction_rubs(meet: Meeting) -> Meeting:
+    """The same meeting with arms to halfway into the overlap. The force along the normal turns the bodies alike there,
+    and the gap has the same rate."""
+    halfway = scaled(-0.5 * min(meet.gap, 0.0), meet.normal)
+    return Meeting(meet.gap, meet.normal, plus(meet.arm, halfway), plus(meet.face_arm, halfway), meet.past)

@@ -38,6 +38,7 @@ from ..rotation import add_momentum, apply_impulse, in_body, in_world, spin_from
 from ..rows import Row, Rows
 from ..supports import Supports
 from ..system import Books, System
+from .faces import Meeting
 
 SWEEPS = 50
 """Most sweeps over the lines in a step."""
@@ -156,20 +157,18 @@ def inverse_mass_along(body: Row, direction: Vector) -> float:
 
 
 @inlined
-def list_direction(
-    system: System, line: Row, number: int, direction: Vector, arm: Vector, face_arm: Vector, velocity: Vector
-) -> None:
+def list_direction(system: System, line: Row, number: int, direction: Vector, meet: Meeting, velocity: Vector) -> None:
     """Prepare one tangential direction of a line that sticks rigidly, see `list_rigid`."""
-    row, body, on_face = system.ways[number], system.bodies[line.body], line.face >= 0
+    row, body, on_face = system.tangents[number], system.bodies[line.body], line.face >= 0
     row.body, row.face, row.support, row.slip = line.body, line.face, line.support, dot(direction, velocity)
-    lever = moment(arm, direction)
+    lever = moment(meet.arm, direction)
     spin = spin_from_many(body, lever)
-    put(row.way, direction)
+    put(row.direction, direction)
     put(row.lever, lever)
     put(row.spin, spin)
     compliance = inverse_mass_along(body, direction) + dot(lever, spin)
     if on_face:
-        face, lever = system.bodies[line.face], moment(face_arm, direction)
+        face, lever = system.bodies[line.face], moment(meet.face_arm, direction)
         spin = spin_from_many(face, lever)
         put(row.lever_on_face, lever)
         put(row.spin_of_face, spin)
@@ -189,29 +188,26 @@ def swept(system: System, line: Row, arm: Vector, face_arm: Vector) -> Vector:
 
 
 @inlined
-def list_rigid(
-    system: System, line: Row, first: int, normal: Vector, arms: tuple[Vector, Vector], velocity: Vector, h: float
-) -> None:
+def list_rigid(system: System, line: Row, first: int, meet: Meeting, velocity: Vector, h: float) -> None:
     """Prepare the tangential directions of a line that sticks rigidly.
 
     Args:
         system: the bodies, and the room for the directions.
         line: the line.
         first: number of its first direction.
-        normal: of its face.
-        arms: from the two centroids to where friction acts [m].
+        meet: its normal, and the arms to where friction acts.
         velocity: of the point there against its face, before the forces act [m/s].
         h: length of a step [s].
     """
-    arm, face_arm = arms
-    a, drift = system.ways[first], scaled(0.5 * h, swept(system, line, arm, face_arm))
-    if len(normal) == 2:
-        list_direction(system, line, first, tangent(normal), arm, face_arm, velocity)
+    a, normal = system.tangents[first], meet.normal
+    drift = scaled(0.5 * h, swept(system, line, meet.arm, meet.face_arm))
+    if len(velocity) == 2:
+        list_direction(system, line, first, tangent(normal), meet, velocity)
         a.stiffness, a.drift = 1 / a.compliance, dot(tangent(normal), drift)
         return
-    b, (first_tangent, second_tangent) = system.ways[first + 1], tangents(normal)
-    list_direction(system, line, first, first_tangent, arm, face_arm, velocity)
-    list_direction(system, line, first + 1, second_tangent, arm, face_arm, velocity)
+    b, (first_tangent, second_tangent) = system.tangents[first + 1], tangents(normal)
+    list_direction(system, line, first, first_tangent, meet, velocity)
+    list_direction(system, line, first + 1, second_tangent, meet, velocity)
     a.drift, b.drift = dot(first_tangent, drift), dot(second_tangent, drift)
     a.coupling = dot(read(a.lever), read(b.spin))
     if line.face >= 0:
@@ -223,7 +219,7 @@ def list_rigid(
 @inlined
 def slip_along(system: System, row: Row) -> float:
     """Slip along a tangential direction of a line that sticks rigidly [m/s]."""
-    body, direction = system.bodies[row.body], read(row.way)
+    body, direction = system.bodies[row.body], read(row.direction)
     slip = dot(direction, read(body.velocity))
     slip += dot(read(row.lever), read(body.spin))
     if row.face >= 0:
@@ -245,8 +241,8 @@ def combined(impulses: Vector, first: Vector, second: Vector) -> Vector:
 @inlined
 def strike(system: System, first: int, impulses: Vector) -> None:
     """Apply impulses along the tangential directions of a line to its body and to that of its face [N s]."""
-    a, b = system.ways[first], system.ways[first + len(impulses) - 1]
-    body, kick = system.bodies[a.body], combined(impulses, read(a.way), read(b.way))
+    a, b = system.tangents[first], system.tangents[first + len(impulses) - 1]
+    body, kick = system.bodies[a.body], combined(impulses, read(a.direction), read(b.direction))
     apply_impulse(body, kick)
     increase(body.spin, combined(impulses, read(a.spin), read(b.spin)))
     if a.face >= 0:
@@ -260,8 +256,8 @@ def strike(system: System, first: int, impulses: Vector) -> None:
 def impulses_of(system: System, first: int, like: Vector) -> Vector:
     """The impulses along the tangential directions of a line [N s]."""
     if len(like) == 2:
-        return (system.ways[first].impulse,)
-    return system.ways[first].impulse, system.ways[first + 1].impulse
+        return (system.tangents[first].impulse,)
+    return system.tangents[first].impulse, system.tangents[first + 1].impulse
 
 
 @inlined
@@ -274,10 +270,10 @@ def begin(system: System, line: Row, first: int, friction: float, kick: float, l
     if len(like) == 2:
         impulses = shortened(grip, limit)
     else:
-        a, b = system.ways[first], system.ways[first + 1]
-        impulses = shortened((dot(read(a.way), grip), dot(read(b.way), grip)), limit)
+        a, b = system.tangents[first], system.tangents[first + 1]
+        impulses = shortened((dot(read(a.direction), grip), dot(read(b.direction), grip)), limit)
     for i in range(len(like) - 1):
-        row = system.ways[first + i]
+        row = system.tangents[first + i]
         row.impulse, row.limit = impulses[i], limit
 
 
@@ -288,11 +284,11 @@ def stopping(system: System, first: int, like: Vector) -> Vector:
     The slip after the forces have acted is then the negative of that before, so that a line that sticks dissipates no
     energy and stays where it is.
     """
-    a = system.ways[first]
+    a = system.tangents[first]
     slip, limit = slip_along(system, a) + a.drift, a.limit
     if len(like) == 2:
         return shortened((a.impulse - slip * a.stiffness,), limit)
-    b = system.ways[first + 1]
+    b = system.tangents[first + 1]
     other = slip_along(system, b) + b.drift
     impulse = a.impulse - (a.stiffness * slip - a.shared * other)
     other_impulse = b.impulse - (b.stiffness * other - a.shared * slip)
@@ -311,10 +307,10 @@ def stop(system: System, first: int, like: Vector) -> float:
     impulses = stopping(system, first, like)
     change = minus(impulses, impulses_of(system, first, like))
     strike(system, first, change)
-    system.ways[first].impulse = impulses[0]
+    system.tangents[first].impulse = impulses[0]
     if len(like) == 2:
         return abs(change[0])
-    system.ways[first + 1].impulse = impulses[1]
+    system.tangents[first + 1].impulse = impulses[1]
     return max(abs(change[0]), abs(change[1]))
 
 
@@ -328,7 +324,7 @@ def stick(system: System, active: Integers, count: int, kick: float) -> None:
     like = read(system.bodies[0].place)
     each, largest = len(like) - 1, 0.0
     for i in range(count):
-        largest = max(largest, system.ways[each * i].limit)
+        largest = max(largest, system.tangents[each * i].limit)
         strike(system, each * i, impulses_of(system, each * i, like))
     for sweep in range(SWEEPS):
         changed = 0.0
@@ -349,10 +345,10 @@ def keep_rigid(system: System, line: Row, first: int, kick: float, like: Vector)
     if len(like) == 2:
         line.grip[0] = impulses[0] / kick
         return
-    a, b = system.ways[first], system.ways[first + 1]
+    a, b = system.tangents[first], system.tangents[first + 1]
     lever = combined(impulses, read(a.lever), read(b.lever))
     add_momentum(system.bodies[a.body], lever)
-    grip = scaled(1 / kick, combined(impulses, read(a.way), read(b.way)))
+    grip = scaled(1 / kick, combined(impulses, read(a.direction), read(b.direction)))
     if a.face >= 0:
         lever = combined(impulses, read(a.lever_on_face), read(b.lever_on_face))
         add_momentum(system.bodies[a.face], scaled(-1.0, lever))
@@ -367,9 +363,9 @@ def book_rubbing(system: System, books: Books, count: int) -> tuple[float, float
     """
     totals, rubbed, put_in = books.totals[0], 0.0, 0.0
     for i in range((len(read(system.bodies[0].place)) - 1) * count):
-        row = system.ways[i]
+        row = system.tangents[i]
         totals.friction -= 0.5 * row.impulse * (row.slip + slip_along(system, row))
-        work = row.impulse * carried(row, system.supports, read(row.way))
+        work = row.impulse * carried(row, system.supports, read(row.direction))
         totals.ground += work
         rubbed -= 0.5 * row.impulse * row.slip
         put_in += 0.5 * work

@@ -1,1 +1,1 @@
-"""The kinds of links of explicit steps, each in a file of its own."""
+"""The kinds of links and the laws of joints of explicit steps, each in a file of its own."""

@@ -30,7 +30,7 @@ class Histories(NamedTuple):
 
 
 class Actuators(Kind, Histories):
-    """Springs and dashpots, `k` and `c` [N/m, N s/m], from a history to a point of a body along the way `between`.
+    """Springs and dashpots, `k` and `c` [N/m, N s/m], from a history to a point of a body along `between`.
 
     One without a body drives the centroid of all. `reach` is the displacement at the start of the history [m], and
     `dragged` the part of the force of the last step that the dashpot had [N].
@@ -123,7 +123,7 @@ class Actuators(Kind, Histories):
 
 @inlined
 def drive(row: Row, bodies: Rows, force: float, direction: Vector) -> None:
-    """Let an actuator push its point along a way, or all bodies in proportion to their masses [N]."""
+    """Let an actuator push its point along a direction, or all bodies in proportion to their masses [N]."""
     if row.body >= 0:
         body, at = bodies[row.body], read(row.at)
         add_force(body, plus(at, rotation_change(body, at)), scaled(force, direction))
@@ -144,7 +144,7 @@ def mass_of(bodies: Rows) -> float:
 
 @inlined
 def driven_place(row: Row, bodies: Rows, direction: Vector) -> tuple[float, float]:
-    """Displacement along a way [m] and velocity [m/s] of what an actuator drives: its point, or the centroid of all."""
+    """Displacement [m] and velocity [m/s] along a direction of what an actuator drives: its point, or all bodies."""
     if row.body >= 0:
         body, at = bodies[row.body], read(row.at)
         change = rotation_change(body, at)

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...compiled import inlined
-from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun, vector
+from ...geometry.vectors import Vector, dot, minus, norm, plus, read, scaled, spun, vector
 from ...linear import rates_of
 from ...problem.masonry.case import AnyCase
 from ...problem.wall.effect import LinkLaw
@@ -165,7 +165,7 @@ def pull(link: Row, system: System) -> Pull:
         anchor_arm = plus(anchor_arm, change)
     elif link.support >= 0:
         span = minus(span, vector(system.supports.moved, link.support, at))
-    length = math.sqrt(dot(span, span))
+    length = norm(span)
     return Pull(length, scaled(1 / length, span), arm, anchor_arm)
 
 

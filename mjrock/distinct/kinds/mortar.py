@@ -14,13 +14,13 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from ...compiled import inlined
-from ...geometry.vectors import Vector, dot, increase, minus, no_spin, plus, put, read, scaled
+from ...geometry.vectors import Vector, dot, increase, minus, no_spin, norm, plus, put, read, scaled
 from ...problem.masonry.laws.bond import Bond
 from ...problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
 from ...problem.masonry.laws.joint_law import normal_force
 from ...quantities import Array, Flags
 from ...scene.scene import Scene
-from ..contacts.contact import meeting, relative_velocity, where_friction_rubs
+from ..contacts.faces import meeting, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sheared, shortened, stretched
 from ..rotation import in_body
 from ..rows import Fields, Row, Rows, numbers
@@ -151,8 +151,7 @@ def make_dry(books: Books, line: Row, bond: Row) -> None:
 @inlined
 def crush_line(books: Books, line: Row, bond: Row, gap: float) -> float:
     """Crush a line at a gap [m]: its face moves back. Returns the distance [m]."""
-    grip = read(bond.grip)
-    closing = crush(bond, gap, bond.k_s * math.sqrt(dot(grip, grip)))
+    closing = crush(bond, gap, bond.k_s * norm(read(bond.grip)))
     if closing > 0:
         back = scaled(-closing, read(line.normal))
         increase(line.origin, back)
@@ -162,19 +161,22 @@ def crush_line(books: Books, line: Row, bond: Row, gap: float) -> float:
 
 
 @inlined
-def slide(
-    bodies: Rows, line: Row, bond: Row, normal: Vector, slip: Vector, push: float, h: float
-) -> tuple[Vector, float]:
+def slide(bodies: Rows, line: Row, bond: Row, elongation: Vector, slip: Vector, push: float) -> tuple[Vector, float]:
     """Force of spring and dashpot of a bond along the face [N], see `sprung_friction`, and the energy that its cohesion
-    dissipates [J]. That is too much where crushing limits the force: the caller limits it."""
+    dissipates [J]. That is too much where crushing limits the force: the caller limits it.
+
+    Args:
+        bodies, line, bond: the bodies, the line and its bond.
+        elongation: of the shear spring, if it does not slide in this step [m].
+        slip: velocity along the face [m/s].
+        push: force along the normal [N].
+    """
     bond.friction = bond.residual + bond.friction_drop * bond.integrity
     limit = bonded_limit(bond, push)
-    trial = stretched(bodies, line.face, bond.grip, normal, scaled(h, slip))
-    grip = shortened(trial, limit / bond.k_s)
+    grip = shortened(elongation, limit / bond.k_s)
     c_s = bond.c_s * (1 - bond.undamped * bond.secant / bond.k)
     drag = shortened(minus(scaled(-bond.k_s, grip), scaled(c_s, slip)), limit)
-    slid = minus(trial, grip)
-    dissipated = wear(bond, math.sqrt(dot(slid, slid)))
+    dissipated = wear(bond, norm(minus(elongation, grip)))
     if line.face >= 0:
         grip = in_body(bodies[line.face], grip)
     put(bond.grip, grip)
@@ -204,7 +206,8 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
     books.dashpots[line.group] -= 0.5 * h * (bond.pressed + pressed) * rate
     last = read(bond.dragged)
     stored_before = sheared(bond)
-    drag, dissipated = slide(bodies, line, bond, meet.normal, slip, push + normal_force(line, gap, rate), h)
+    elongation = stretched(bodies, line.face, bond.grip, meet.normal, scaled(h, slip))
+    drag, dissipated = slide(bodies, line, bond, elongation, slip, push + normal_force(line, gap, rate))
     mean = scaled(0.5 * h, plus(last, drag))
     done = -dot(mean, slip)
     dissipated = min(dissipated, max(done + stored_before - sheared(bond), 0.0))  # no more than there is

@@ -35,7 +35,7 @@ from ...problem.wall.user_law import (
 )
 from ...quantities import GRAVITY, Array, Flags, Integers
 from ...scene.scene import Scene
-from ..contacts.contact import meeting, relative_velocity, where_friction_rubs
+from ..contacts.faces import meeting, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sprung_friction
 from ..rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
 from ..system import Books, System
@@ -105,7 +105,7 @@ class OwnLaws(JointLaw, Table):
         *numbers("area"),  # of the line [m2]
         *numbers("stiffest", "strongest"),  # spring and dashpot for which steps are short enough [N/m, N s/m]
         *numbers("pulls", "damps", "remembers"),  # 1 where the law does
-        ("values", float, (ROOM,)),  # see `own_law.layout`
+        ("values", float, (ROOM,)),  # see `user_law.layout`
     ]
     bond: ClassVar[Any] = Own
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import inlined
-from ...geometry.vectors import Vector, dot, minus, plus, put, scaled, spun, vector
+from ...geometry.vectors import Vector, dot, minus, norm, plus, put, scaled, spun, vector
 from ...quantities import Array
 from ..rows import Row, Rows, integers, numbers, vectors
 from .constants import AS_LARGE, AS_TOWARDS, EDGES_ALONG_FACE, ON_EDGE, ONE_PLACE, PARALLEL_EDGES
@@ -31,6 +31,18 @@ PLACE = np.dtype(
 )
 """A contact place: block of the face, other block, position [m], normal out of the face, gap [m], share, common area
 [m2], and number of the pair of sides, see `sides_between`."""
+
+
+class Workspace(NamedTuple):
+    """Arrays that a search writes.
+
+    Args:
+        places: rows of `PLACE`.
+        corners: room for the corners of two faces, twice [m], shape (n, 3).
+    """
+
+    places: Rows
+    corners: Array
 
 
 @inlined
@@ -52,12 +64,6 @@ def normal_of(solids: Solids, face: int) -> Vector:
 
 
 @inlined
-def length_of(a: Vector) -> float:
-    """Length of a vector."""
-    return math.sqrt(dot(a, a))
-
-
-@inlined
 def longest_edge(solids: Solids, face: int) -> float:
     """Length of the longest edge of a face [m], to which small distances are compared.
 
@@ -65,7 +71,7 @@ def longest_edge(solids: Solids, face: int) -> float:
     """
     longest = 0.0
     for i in range(solids.first[face], solids.first[face + 1]):
-        longest = max(longest, length_of(minus(next_corner(solids, face, i), corner_of(solids, i))))
+        longest = max(longest, norm(minus(next_corner(solids, face, i), corner_of(solids, i))))
     return longest
 
 
@@ -127,7 +133,7 @@ def without_duplicates(polygon: Array, count: int, slack: float) -> int:
     kept = 0
     for i in range(count):
         at, last = triple(polygon, i), triple(polygon, kept - 1 if kept else count - 1)
-        if length_of(minus(at, last)) > slack:
+        if norm(minus(at, last)) > slack:
             put(polygon[kept], at)
             kept += 1
     return kept
@@ -148,7 +154,7 @@ def common_area(solids: Solids, face: int, over: int, room: Array) -> int:
     for i in range(solids.first[face], solids.first[face + 1]):
         a = corner_of(solids, i)
         outwards = spun(minus(next_corner(solids, face, i), a), normal)
-        outwards = scaled(1 / length_of(outwards), outwards)
+        outwards = scaled(1 / norm(outwards), outwards)
         count = cut(polygon, count, outwards, dot(outwards, a), slack, further)
     return without_duplicates(polygon, count, slack)
 
@@ -159,7 +165,7 @@ def turn_share(polygon: Array, count: int, i: int) -> float:
     at = triple(polygon, i)
     before = minus(at, triple(polygon, i - 1 if i else count - 1))
     after = minus(triple(polygon, (i + 1) % count), at)
-    return math.atan2(length_of(spun(before, after)), dot(before, after)) / (2 * math.pi)
+    return math.atan2(norm(spun(before, after)), dot(before, after)) / (2 * math.pi)
 
 
 @inlined
@@ -168,14 +174,14 @@ def area_of(polygon: Array, count: int) -> float:
     first, area = triple(polygon, 0), 0.0
     for i in range(1, count - 1):
         one, next_one = triple(polygon, i), triple(polygon, i + 1)
-        area += 0.5 * length_of(spun(minus(one, first), minus(next_one, first)))
+        area += 0.5 * norm(spun(minus(one, first), minus(next_one, first)))
     return area
 
 
 @inlined
 def distance_from(at: Vector, a: Vector, along: Vector) -> float:
     """Distance of a place from the line through another one [m]."""
-    return length_of(spun(along, minus(at, a))) / length_of(along)
+    return norm(spun(along, minus(at, a))) / norm(along)
 
 
 @inlined
@@ -202,7 +208,7 @@ def write_corner(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int]
     for i in range(solids.first[over], solids.first[over + 1]):
         corner = corner_of(solids, i)
         along = minus(next_corner(solids, over, i), corner)
-        if length_of(minus(at, corner)) < one_place:
+        if norm(minus(at, corner)) < one_place:
             gap = dot(normal, minus(at, corner_of(solids, solids.first[face])))
             write_place(place, blocks, at, normal, gap)
             return
@@ -214,7 +220,7 @@ def write_corner(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int]
         corner = corner_of(solids, i)
         own, off = minus(next_corner(solids, face, i), corner), minus(at, corner)
         off = minus(off, scaled(dot(off, normal), normal))
-        if length_of(off) < one_place:
+        if norm(off) < one_place:
             normal = normal_of(solids, over)
             gap = dot(normal, minus(corner, corner_of(solids, solids.first[over])))
             write_place(place, (blocks[1], blocks[0]), corner, normal, gap)
@@ -228,23 +234,23 @@ def write_corner(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int]
         minus(next_corner(solids, over, edge), corner_of(solids, edge)),
     )
     common = spun(along, own)
-    size = length_of(common)
-    if abs(dot(common, normal)) > EDGES_ALONG_FACE * size and size > PARALLEL_EDGES * length_of(along) * length_of(own):
+    size = norm(common)
+    if abs(dot(common, normal)) > EDGES_ALONG_FACE * size and size > PARALLEL_EDGES * norm(along) * norm(own):
         normal = scaled(math.copysign(1 / size, dot(common, normal)), common)
     write_place(place, blocks, at, normal, dot(normal, minus(at, below)))
 
 
 @inlined
-def clip(solids: Solids, face: int, blocks: tuple[int, int], table: Rows, count: int, room: Array) -> int:
+def clip(solids: Solids, face: int, blocks: tuple[int, int], work: Workspace, count: int) -> int:
     """Write the places where a block lies over a face of another. Returns the number of places in the table.
 
     Args:
         solids: the blocks where they are.
         face, blocks: the face, its block, and the other one.
-        table: rows of `PLACE`.
-        count: how many places there are.
-        room: for the corners of two faces, twice.
+        work: the table of places, and room for corners.
+        count: number of places in the table.
     """
+    table, room = work
     faces = face, face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
     corners = common_area(solids, faces[0], faces[1], room)
     if corners < 3:
@@ -293,7 +299,7 @@ def grid_of(polygon: Array, corners: int, cells: tuple[int, int]) -> Grid:
     if corners != 4:
         return Grid(corners, corners, (cells[0] + 1) // 2, (cells[0] + 1) // 2)
     edge = minus(triple(polygon, 1), triple(polygon, 0))
-    if abs(edge[1]) > 0.5 * length_of(edge):
+    if abs(edge[1]) > 0.5 * norm(edge):
         return Grid(corners, 1, cells[1], cells[0])
     return Grid(corners, 1, cells[0], cells[1])
 
@@ -327,7 +333,7 @@ def middle_of(polygon: Array, count: int) -> Vector:
     off = scaled(0.0, first)
     for i in range(1, count - 1):
         one, other = minus(triple(polygon, i), first), minus(triple(polygon, i + 1), first)
-        part = length_of(spun(one, other))
+        part = norm(spun(one, other))
         area, off = area + part, plus(off, scaled(part / 3, plus(one, other)))
     return plus(first, scaled(1 / area, off))
 
@@ -361,8 +367,8 @@ def density_at(quad: Quad, s: float, t: float) -> float:
     """Jacobian of the bilinear map from s, t [m2]."""
     a, b, c, d = bilinear_weights(s, t)
     ab, bc, cd, da = minus(quad[1], quad[0]), minus(quad[2], quad[1]), minus(quad[3], quad[2]), minus(quad[0], quad[3])
-    low = a * length_of(spun(da, ab)) + b * length_of(spun(ab, bc))
-    return low + c * length_of(spun(bc, cd)) + d * length_of(spun(cd, da))
+    low = a * norm(spun(da, ab)) + b * norm(spun(ab, bc))
+    return low + c * norm(spun(bc, cd)) + d * norm(spun(cd, da))
 
 
 @inlined
@@ -428,21 +434,16 @@ def write_inner_point(
 
 @inlined
 def clip_in_grid(
-    solids: Solids,
-    face: int,
-    blocks: tuple[int, int],
-    cells: tuple[int, int],
-    table: Rows,
-    count: int,
-    room: Array,
+    solids: Solids, face: int, blocks: tuple[int, int], cells: tuple[int, int], work: Workspace, count: int
 ) -> int:
     """Write the places where a block lies over a face of another, in the grid of their joint. Returns the number of
     places in the table.
 
     Args:
-        solids, face, blocks, table, count, room: as of `clipping.clip`.
+        solids, face, blocks, work, count: as of `clip`.
         cells: of the grid, along x and z and along y.
     """
+    table, room = work
     faces = face, face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
     corners = common_area(solids, faces[0], faces[1], room)
     corners = straightened(room, corners, room[len(room) // 2 :])

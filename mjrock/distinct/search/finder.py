@@ -17,12 +17,22 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled_at_once, inlined
-from ...geometry.vectors import Vector, dot, minus, plus, read, scaled, spun
+from ...geometry.vectors import Vector, dot, minus, norm, plus, read, scaled, spun
 from ...problem.masonry.blocks.joints import each_with_each
 from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
 from ..rows import Rows, rows
-from .clipping import PLACE, clip, clip_in_grid, corner_of, face_towards, length_of, next_corner, normal_of, write_place
+from .clipping import (
+    PLACE,
+    Workspace,
+    clip,
+    clip_in_grid,
+    corner_of,
+    face_towards,
+    next_corner,
+    normal_of,
+    write_place,
+)
 from .constants import (
     AS_LARGE,
     CANDIDATE_FACES,
@@ -121,12 +131,12 @@ class Finder:
         inside = [flags for solid in solids for flags in solid.inside]
         self.solids = Solids.about(parts, centroids[self.owner], inside, self.owner, sides_of(solids), flat=flat)
         most = int(np.diff([*self.solids.first, *self.solids.begin]).max())
-        self._table, self._room = rows(PLACE, 256), np.empty((4 * most + 4, 3))
+        self._work = Workspace(rows(PLACE, 256), np.empty((4 * most + 4, 3)))
 
     def apart(self) -> Finder:
         """A copy with work arrays of its own: runs in two threads must not share them."""
         fresh = copy(self)
-        fresh._table, fresh._room = self._table.copy(), np.empty_like(self._room)
+        fresh._work = Workspace._make(part.copy() for part in self._work)
         return fresh
 
     def places_near(self, poses: Poses, reach: Array, searched: Flags, skipped: Integers) -> ContactPlaces:
@@ -145,9 +155,9 @@ class Finder:
         order, cells = np.argsort(low[:, axis]), self.points - 1
         pairs = skipped, self.jointed, np.column_stack([cells, np.ones_like(cells) if self.flat else cells])
         near = Near(low, high, order, axis, reach, searched, self._fixed, self._rank[self.owner], *pairs)
-        while (count := find(solids, near, self._table, self._room)) > len(self._table):
-            self._table = rows(PLACE, 2 * count)
-        table, of_parts = self._table[:count].view(np.ndarray), self.number.max() > 1  # faster than records
+        while (count := find(solids, near, self._work)) > len(self._work.places):
+            self._work = self._work._replace(places=rows(PLACE, 2 * count))
+        table, of_parts = self._work.places[:count].view(np.ndarray), self.number.max() > 1  # faster than records
         table = self._once(table) if of_parts else table
         found = self._in_order(ContactPlaces(*(table[name].copy() for name in (PLACE.names or ())[:-1])))
         found = self._of_the_plane(found) if self.flat else found
@@ -246,7 +256,7 @@ def index_of(values: Integers, number: int) -> int:
 
 
 @compiled_at_once
-def find(solids: Solids, near: Near, table: Rows, room: Array) -> int:
+def find(solids: Solids, near: Near, work: Workspace) -> int:
     """Write the places of all pairs that are near, see `clipping.clip`, those of faces in the grid of their joint where
     they had one.
 
@@ -270,7 +280,7 @@ def find(solids: Solids, near: Near, table: Rows, room: Array) -> int:
                 continue
             had = index_of(near.jointed, number)
             cells = (near.cells[had, 0], near.cells[had, 1]) if had >= 0 else (1, 1)
-            count = find_pair(solids, near.reach[a] + near.reach[b], pair, table, count, room, cells)
+            count = find_pair(solids, near.reach[a] + near.reach[b], pair, cells, work, count)
     return count
 
 
@@ -288,10 +298,9 @@ def find_pair(
     solids: Solids,
     reach: float,
     blocks: tuple[int, int],
-    table: Rows,
+    cells: tuple[int, int],
+    work: Workspace,
     count: int,
-    room: Array,
-    cells: tuple[int, int] = (1, 1),
 ) -> int:
     """Write the places of a pair that is nearer than its reach [m], on faces in a grid of some cells.
 
@@ -303,27 +312,27 @@ def find_pair(
     best = max(distance, other_distance)
     if best > reach or face < 0 or other_face < 0:
         return count
-    if count + len(room) > len(table):
-        return count + len(room)
+    if count + len(work.corners) > len(work.places):
+        return count + len(work.corners)
     least = best - CANDIDATE_FACES * min(solids.extent[face], solids.extent[other_face])
     longer = solids.extent[other_face] - solids.extent[face]
     if other_distance + LARGER_FACE * longer - SECOND_FACE * solids.extent[face] > distance:
         face, blocks = other_face, (b, a)
     if best < 0:
-        face, blocks, gap = shallowest(solids, face, blocks, least, table, count, room)
+        face, blocks, gap = shallowest(solids, face, blocks, least, work, count)
         over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
         if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FACES_MEET:
             direction, edge_distance = edge_separation(solids, a, b)
             if edge_distance > EDGES_MEET * gap:
                 if edge_distance >= reach:
                     return count
-                return write_edges(solids, (a, b), direction, edge_distance, table, count)
+                return write_edges(solids, (a, b), direction, edge_distance, work.places, count)
     whole = with_whole_sides(solids)
     if cells[0] > 1:
-        last = clip_in_grid(whole, face, blocks, cells, table, count, room)
+        last = clip_in_grid(whole, face, blocks, cells, work, count)
     else:
-        last = clip(whole, face, blocks, table, count, room)
-    return last if last > count else write_near_corner(solids, face, blocks, best, table, count)
+        last = clip(whole, face, blocks, work, count)
+    return last if last > count else write_near_corner(solids, face, blocks, best, work.places, count)
 
 
 @inlined
@@ -344,7 +353,7 @@ def write_near_corner(solids: Solids, face: int, blocks: tuple[int, int], gap: f
 
 @inlined
 def shallowest(
-    solids: Solids, face: int, blocks: tuple[int, int], least: float, table: Rows, count: int, room: Array
+    solids: Solids, face: int, blocks: tuple[int, int], least: float, work: Workspace, count: int
 ) -> tuple[int, tuple[int, int], float]:
     """The face of two overlapping blocks with the smallest overlap at its places, its block and the other one, and the
     least gap of these places [m].
@@ -356,9 +365,10 @@ def shallowest(
         solids: the blocks where they are.
         face, blocks: the face from which the other block is farthest, its block and the other one.
         least: distance of the other block from a face from which on that face is a candidate [m].
-        table, count, room: for places that are not kept, see `clipping.clip`.
+        work, count: for places that are not kept, see `clipping.clip`.
     """
-    first = deepest(table, count, clip(solids, face, blocks, table, count, room))
+    table = work.places
+    first = deepest(table, count, clip(solids, face, blocks, work, count))
     there, most, middle = first >= 0, -math.inf, corner_of(solids, solids.first[face])
     if there:
         most, middle = table[first].gap, read(table[first].at)
@@ -369,7 +379,7 @@ def shallowest(
         block, other = blocks if turn == 0 else (blocks[1], blocks[0])
         for one in range(solids.face[block], solids.face[block + 1]):
             if one != face and not solids.inside[one] and distance_outside(solids, one, other) > least:
-                row = deepest(table, count, clip(solids, one, (block, other), table, count, room))
+                row = deepest(table, count, clip(solids, one, (block, other), work, count))
                 gap = table[row].gap if row >= 0 else -math.inf
                 open_or_beside = (there and gap >= 0) or (common and gap > height(solids, one, middle))
                 if gap > least_gap and not open_or_beside:
@@ -445,7 +455,7 @@ def edge_separation(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
     for i in range(solids.edge[a], solids.edge[a + 1]):
         for j in range(solids.edge[b], solids.edge[b + 1]):
             normal = spun(triple(solids.edges, i), triple(solids.edges, j))
-            size = length_of(normal)
+            size = norm(normal)
             if size < NOT_PARALLEL:
                 continue
             for sign in (1.0, -1.0):

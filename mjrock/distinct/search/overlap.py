@@ -6,6 +6,7 @@ import heapq
 
 import numpy as np
 
+from ...geometry.convex import kept_of
 from ...geometry.hull import area_vector
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array, percent_text, warn_of
@@ -127,8 +128,10 @@ def common_volume(solids: Solids, a: int, b: int) -> float:
                     break
                 beyond = (polygon - face_corners(solids, wall)[0]) @ solids.normals[wall]
                 flush = np.abs(beyond).max(initial=0.0) < one_plane and normal @ solids.normals[wall] > 0
-                # a face that two blocks share counts once
-                polygon = polygon[:0] if flush and block == b else polygon if flush else cut_off(polygon, beyond)
+                if not flush:
+                    polygon = kept_of(polygon, -beyond)
+                if len(polygon) < 3 or (flush and block == b):  # a face that two blocks share counts once
+                    polygon = polygon[:0]
             if len(polygon):
                 kept.append((normal, polygon))
     if not kept:
@@ -141,18 +144,3 @@ def face_corners(solids: Solids, face: int) -> Array:
     """Corners around a face [m], shape (n, 3)."""
     corners: Array = solids.corners[solids.outline[solids.first[face] : solids.first[face + 1]]]
     return corners
-
-
-def cut_off(polygon: Array, beyond: Array) -> Array:
-    """What is left of a convex polygon, shape (n, 3), where its corners lie beyond a plane [m], shape (n,)."""
-    if (beyond <= 0).all():
-        return polygon
-    kept = []
-    for i in range(len(polygon)):
-        j = i - 1
-        if (beyond[i] > 0) != (beyond[j] > 0):
-            share = beyond[j] / (beyond[j] - beyond[i])
-            kept.append(polygon[j] + share * (polygon[i] - polygon[j]))
-        if beyond[i] <= 0:
-            kept.append(polygon[i])
-    return np.array(kept) if len(kept) > 2 else polygon[:0]

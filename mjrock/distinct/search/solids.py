@@ -29,7 +29,7 @@ class Solids(NamedTuple):
         corner: where those of each block begin, and where those of the last end, shape (blocks + 1,).
         normals: out of the faces of all blocks, shape (faces, 3).
         face: where those of each block begin, and where those of the last end, shape (blocks + 1,).
-        edges: directions of the edges of all blocks, parallel ones once, shape (ways, 3).
+        edges: directions of the edges of all blocks, parallel ones once, shape (directions, 3).
         edge: where those of each block begin, and where those of the last end, shape (blocks + 1,).
         outline: numbers of the corners around each face, one face after the other.
         first: where those of each face begin, and where those of the last end, shape (faces + 1,).
@@ -144,20 +144,20 @@ def changed(change: Array, a: Vector) -> Vector:
 def with_whole_sides(solids: Solids) -> Solids:
     """The solids whose faces have the outlines of the sides that they lie on."""
     return Solids(
-        solids.corners,
-        solids.corner,
-        solids.normals,
-        solids.face,
-        solids.edges,
-        solids.edge,
-        solids.around,
-        solids.begin,
-        solids.inside,
-        solids.owner,
-        solids.extent,
-        solids.side,
-        solids.around,
-        solids.begin,
+        corners=solids.corners,
+        corner=solids.corner,
+        normals=solids.normals,
+        face=solids.face,
+        edges=solids.edges,
+        edge=solids.edge,
+        outline=solids.around,
+        first=solids.begin,
+        inside=solids.inside,
+        owner=solids.owner,
+        extent=solids.extent,
+        side=solids.side,
+        around=solids.around,
+        begin=solids.begin,
     )
 
 

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled_at_once, inlined
-from ...geometry.vectors import dot, plus, put, read, scaled, vector
+from ...geometry.vectors import dot, norm, plus, put, read, scaled, vector
 from ...problem.masonry.laws.joint_law import normal_force, stored
 from ...quantities import GRAVITY, Array, Flags, Integers
-from ..contacts.contact import meeting, position_over_face, relative_velocity, where_friction_rubs
+from ..contacts.faces import meeting, position_over_face, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sheared
 from ..kinds.lists import is_bonded, stored_by_laws
 from ..rotation import in_world, rotation_change, take_inverse_inertia, update_rotation
@@ -124,7 +124,7 @@ class JointState(NamedTuple):
         blocks: the two blocks of each pair, shape (pairs, 2).
         slip_limit: slip or gap from which on a pair has left its joints [m], shape (pairs,).
         tilt_limit: tilt from which on it has left them [-], shape (pairs,).
-        slip, gap: largest way along the joints of each pair, and least opening [m], shape (pairs,).
+        slip, gap: largest slip along the joints of each pair, and least opening [m], shape (pairs,).
         tilt: 1 less the cosine of the angle of its faces [-], shape (pairs,).
         left: whether it has left its joints since the last update, shape (pairs,).
     """
@@ -183,7 +183,7 @@ def update_motion(system: System, blocks: Blocks, motion: Motion) -> None:
             put(poses.change[block][:, i], rotation_change(body, vector(AXES, i, place)))
         put(poses.moved[block], place)
         put(motion.velocity[block], read(body.velocity))
-        motion.about[block] = math.sqrt(dot(spin, spin)) * blocks.sizes[block] + motion.surge[block]
+        motion.about[block] = norm(spin) * blocks.sizes[block] + motion.surge[block]
     for block in range(len(blocks.support)):
         if blocks.support[block] >= 0:
             motion.about[block] = motion.surge[block]
