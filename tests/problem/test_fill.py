@@ -57,6 +57,8 @@ def test_faces_beside_a_gap_bear_the_whole_load(at):
     for narrow in (0.0, 0.5):  # the second reaches the ends of the blocks and no more
         with pytest.raises(ValueError, match=r"at = 1.5 m lies above a gap between the faces"):
             mr.Fill(top=3.0, spread=narrow).under(masonry, 50e3, 1.5)
+        with pytest.raises(ValueError, match=r"at = 1.5 m lies above a gap between the faces"):  # an axle of a train
+            mr.Fill(top=3.0, spread=narrow).under(masonry, 50e3, [0.5, 1.5])
 
 
 def test_a_load_spreads_two_to_one():

@@ -131,12 +131,13 @@ class Fill:
         Args:
             masonry: the masonry.
             force: downwards [N], above 0 to 1e9, or that of each axle, shape (n,).
-            at: x of its middle [m], above the faces, or of each axle, shape (n,). Of several those that are not above
-                the faces are left out.
+            at: x of its middle [m], above the faces, or of each axle, shape (n,). Of several those that are
+                beyond the outermost faces are left out.
             width: of each load on the ground, 0 to 100 [m].
 
         Raises:
-            TypeError, ValueError: as `on`, for a value outside its range, or axles of which none is above the faces.
+            TypeError, ValueError: as `on`, for a value outside its range, axles all beyond the outermost faces, or an
+                axle above a gap that reaches no face.
 
         Examples:
             >>> arch = mr.Masonry.arch(radius=5.0, thickness=0.5, span_angle=1.9)
@@ -159,9 +160,12 @@ class Fill:
         for i, (each, place) in enumerate(zip(forces.tolist(), places.tolist(), strict=True)):
             name = "force" if len(forces) == 1 else f"force[{i}]"
             axle = Axle(require_within(name, each, 1e-3, 1e9, "N"), place, 2 * half, self.top)
-            loads += self._under(faces, axle) if place in above else []
-        if not loads:
-            raise ValueError(f"at = {above[0]:g} m lies above a gap between the faces; give places above the faces")
+            if place not in above:
+                continue
+            borne = self._under(faces, axle)
+            if not borne:
+                raise ValueError(f"at = {place:g} m lies above a gap between the faces; give places above the faces")
+            loads += borne
         return tuple(loads)
 
     def _under(self, faces: list[Bearing], axle: Axle) -> list[Load]:
