@@ -11,7 +11,7 @@ from ..quantities import Array, Integers
 from ..scene.course import Ground
 from .rows import DISSIPATED_BY_LAWS, Rows, joined, kinds, rows
 from .supports import Supports
-from .thread import BODIES_TOGETHER, Thread, spans_of, threads_of
+from .thread import Thread, threads_of
 
 Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
@@ -82,24 +82,24 @@ class Books(NamedTuple):
         return cls(np.zeros(groups), np.zeros(links), *waiting).with_room(system)
 
     def with_room(self, system: System) -> Books:
-        """The books with room for the lines of a system."""
-        books, lines, spans = self, len(system.lines), len(spans_of(system.lines)) - 1
+        """The books with room for the lines of a system, whose forces wait for no other thread."""
+        return self.of_threads(system, 1)[0]
+
+    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Thread, ...]]:
+        """The books with room for the lines of a system, and a number of threads for them."""
+        (threads, apart), lines = threads_of(system.bodies, system.lines, count), len(system.lines)
+        books, spans = self._replace(apart=apart), len(threads[0].lines) - 1
         if lines > len(self.active):
             active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
             books = books._replace(active=active, touched=touched, impulse=np.zeros(lines), remaining=np.zeros(lines))
-        more = max(spans, -(-len(system.bodies) // BODIES_TOGETHER)) - len(self.totals)
+        more = max(spans, len(threads[0].bodies) - 1) - len(self.totals)
         if more > 0:
             books = books._replace(totals=joined(self.totals, rows(self.totals.dtype, more)))
         if spans + len(self.dashpots) > len(self.encounters):
             encounters = np.zeros(spans + len(self.dashpots))
             encounters[: len(self.encounters)] = self.encounters
             books = books._replace(encounters=encounters)
-        return books
-
-    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Thread, ...]]:
-        """The books with room for the lines of a system, and a number of threads for them."""
-        threads, apart = threads_of(system.bodies, system.lines, count)
-        return self.with_room(system)._replace(apart=apart), threads
+        return books, threads
 
     @property
     def size(self) -> int:

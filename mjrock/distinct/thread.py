@@ -93,6 +93,10 @@ def put_apart(bodies: Rows, lines: Rows, parts: Integers) -> Rows:
             their force need not wait.
         parts: where the lines of each thread begin, and where those of the last one end.
     """
+    kind = kinds(bodies["rest"].shape[1]).apart
+    if len(parts) == 2:  # one thread
+        lines["apart"] = lines["face_apart"] = 0
+        return rows(kind, 1, body=-1)
     thread = np.repeat(np.arange(len(parts) - 1), np.diff(parts))
     sides = np.column_stack([lines["body"], lines["face"]]).ravel()
     first, last = np.full(len(bodies), len(parts)), np.full(len(bodies), -1)
@@ -104,7 +108,7 @@ def put_apart(bodies: Rows, lines: Rows, parts: Integers) -> Rows:
     numbers = np.zeros(2 * len(lines), dtype=np.int32)
     numbers[waits] = 1 + np.arange(len(waits))
     lines["apart"], lines["face_apart"] = numbers[::2], numbers[1::2]
-    return rows(kinds(bodies["rest"].shape[1]).apart, 1 + len(waits), body=np.append(-1, sides[waits]))
+    return rows(kind, 1 + len(waits), body=np.append(-1, sides[waits]))
 
 
 @cache

@@ -17,6 +17,7 @@ from mjrock import machine
 from mjrock.distinct import thread, thread_pool
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.setup import setup_of
+from mjrock.distinct.system import Books
 from mjrock.distinct.thread import LINES_TOGETHER, put_apart, spans_of, threads_of
 
 JOINTS = {"k_n": 1e9, "k_s": 4e8, "friction": 0.6, "xi": 0.05}
@@ -97,6 +98,15 @@ def test_forces_wait_where_two_threads_press_on_a_body():
     assert len(alone) == 1
     assert not lines["apart"].any()
     assert threads[0].own_bodies == (0, 1)
+
+
+def test_room_for_one_thread_takes_back_what_waits():
+    """Lines of a run by two threads write outside of the room of one thread otherwise."""
+    system = setup_of(wall(), None, None).system
+    books, _ = Books.empty(system, len(system.lines)).of_threads(system, 2)
+    assert system.lines["apart"].any()
+    assert len(books.apart) > len(books.with_room(system).apart) == 1
+    assert not system.lines["apart"].any()
 
 
 def test_each_body_and_line_has_one_thread():
