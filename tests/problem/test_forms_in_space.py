@@ -259,6 +259,8 @@ def test_lintels_may_just_touch(apart, turned):
         (lambda: facade(returns="front"), "returns = 'front' is not one of both, left, right, none"),
         (lambda: facade(ground=1.0), "ground = 1.0 of type float is not a Polyhedron"),
         (lambda: facade(length=900.0, height=100.0), "need more units than 25000"),
+        (lambda: facade((math.nan, mr.Opening(0.4, 0.4))), r"openings\[0\], y = nan"),
+        (lambda: facade((2e5, mr.Opening(0.4, 0.4))), r"openings\[0\], y = 200000 m is outside the valid range"),
         (lambda: facade(gable=11), "gable = 11 is outside the valid range 0 to 10"),
         (lambda: facade(unit=(0.4,)), "unit = .* is not the length and the height"),
         (lambda: facade((0.0, mr.Opening(0.4, 0.41))), r"leave a piece of 0.2 x 0.01 m at y = -0.4 m in course 2"),

@@ -58,6 +58,13 @@ def test_a_displacement_along_one_axis_may_be_too_large(far):
         mr.MasonryCase(COLUMN, 1.0, supports={"ground": histories})
 
 
+def test_times_lie_within_eleven_days():
+    with pytest.raises(
+        ValueError, match="supports, ground, t = 1e\\+300 s is outside the valid range -1e\\+06 to 1e\\+06 s"
+    ):
+        mr.MasonryCase(COLUMN, 1.0, supports={"ground": ([0.0, 1e300], [0.0, 0.1], [0.0, 0.0])})
+
+
 def test_rows_of_different_lengths_are_refused():
     with pytest.raises(ValueError, match="supports, ground"):
         mr.MasonryCase(COLUMN, 1.0, supports={"ground": ([0.0, 1.0], [0.0, 0.1, 0.2], [0.0, 0.0])})

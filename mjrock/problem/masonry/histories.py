@@ -131,6 +131,8 @@ def supports_of(masonry: Masonry, given: Any) -> tuple[Support, ...]:
         require_as_many(f"supports, {name}", rows)
         if not (np.diff(rows["t"]) > 0).all():
             raise ValueError(f"supports, {name}: t does not increase")
+        for end in rows["t"][[0, -1]].tolist():
+            require_within(f"supports, {name}, t", end, -LATEST_TIME, LATEST_TIME, "s")
         largest = max(float(np.abs(rows[label]).max()) for label in labels[1:])
         if largest > FARTHEST_SUPPORT:
             raise ValueError(

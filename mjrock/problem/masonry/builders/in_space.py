@@ -17,7 +17,6 @@ from ....quantities import (
     require_array,
     require_flag,
     require_kind,
-    require_real,
     require_sequence,
     require_whole,
     require_within,
@@ -321,7 +320,7 @@ def _holes(openings: Sequence[tuple[float, Opening]], walls: Walls) -> tuple[lis
     for i, pair in enumerate(openings):
         if not isinstance(pair, tuple | list) or len(pair) != 2:
             raise TypeError(f"openings[{i}] = {shown(pair)} is not (y, Opening)")
-        y, opening = require_real(f"openings[{i}], y", pair[0]), pair[1]
+        y, opening = COORDINATE.checked(f"openings[{i}], y", pair[0]), pair[1]
         require_kind(f"openings[{i}]", opening, Opening)
         if opening.round:
             raise ValueError(f"openings[{i}] is round, and blocks are convex: give the rectangle that is left open")
