@@ -120,15 +120,12 @@ def contact_for(
             and stiffness or damping that MuJoCo cannot represent at this step.
 
     Warns:
-        ContactWarning: with a sentence for each reason for which the contact differs from the request.
-
-            * The model: an option that changes every contact, geoms that MuJoCo keeps apart, or a solver that has too
-              few iterations, does not converge or is not tried.
-            * The step: it is too long for the contact, or without k the stiffest contact that it resolves is soft.
-            * The mass: other geoms share it, a constraint or a spring also holds the bodies, or the contact stops
-              another mass in a keyframe.
-            * The shapes: a small turn gives two faces more points, two faces meet in one point, a cylinder stands on a
-              plane, or a blow at `speed` is deeper than the geoms.
+        ContactWarning: with a sentence for each reason for which the contact differs from the request. The model can be
+            one: an option that changes every contact, geoms that MuJoCo keeps apart, or a solver that has too few
+            iterations, does not converge or is not tried. The step can be too long for the contact, or without k leave
+            a soft one. Other geoms may share the mass, a constraint or a spring may also hold the bodies, or the
+            contact stops another mass in a keyframe. The shapes matter where a small turn gives two faces more points,
+            two faces meet in one point, a cylinder stands on a plane, or a blow at `speed` is deeper than the geoms.
     """
     arguments = locals()
     whole = compiled_model(model)
