@@ -73,8 +73,8 @@ def solve_explicit(
         local_damping: share of the unbalanced force along each axis of a body that acts against its velocity, for slow
             motions of masonry with k_s [-], 0 to 0.9. The account "motion" of the dashpots has what both take.
         threads: how many threads make the steps [-], 1 to 256; the answer is the same to the last bit for any number.
-            None takes one for less than 1,000 contact lines, in a worker of a campaign and for rigid friction, and else
-            all cores of this process, as long as these are faster.
+            Rigid friction takes one, whatever is given. None takes one for less than 1,000 contact lines and in a
+            worker of a campaign, and else all cores of this process, as long as these are faster.
 
     Returns:
         The `Response`: `t`, `pose`, `energy`, `outcome` and `message`, and `impacts`, `peaks` of a

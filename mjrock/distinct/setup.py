@@ -74,7 +74,7 @@ def with_motion_damping(setup: Setup, drag: float, local: float) -> Setup:
     if local > 0 and not np.isfinite(setup.system.lines["k_s"]).all():
         raise ValueError(
             f"local_damping = {local:g} needs joints with a shear stiffness, whose friction is part of the unbalanced "
-            "force: give the masonry k_s, or take mass_damping"
+            "force: take mass_damping, or masonry whose joints have k_s"
         )
     return replace(setup, drag=drag, local=local) if drag or local else setup
 

@@ -183,7 +183,7 @@ def required_runs(request: Request, words: Words) -> list[Run]:
             require_same(f"{name}[{i}]", response, request)
         given += [(variant, response) for response in several]
     if not given and request.bare:
-        raise ValueError("responses is empty; give responses, or checks or sections, of which a report may be alone")
+        raise ValueError("responses is empty; give at least one response, or checks, or sections")
     answers = [response for _, response in given]
     motions = [DASH if (motion := response.case.motion) is None else motion.name for response in answers]
     records = named_records([response.case.motion for response in answers], words)

@@ -33,7 +33,7 @@ def joint(bond=MORTAR, *, space=False, angle=0.0, friction=0.75, points=3, **mor
 
 
 class Led:
-    """A joint whose upper block is led along a path: ways along the face and opening [m].
+    """A joint whose upper block is led along a path: displacements along the face and opening [m].
 
     After each call `push` and `drag` are the stresses along the normal and the face at each pose [Pa], `system` and
     `books` what is left.
@@ -49,12 +49,12 @@ class Led:
         self.tables = [np.asarray(table) for table in (self.system.lines, self.system.laws[0].rows)]
         d = len(self.at)
         along, normal = ((np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle)))
-        self.ways = np.array([along, normal] if d == 2 else np.eye(3))
+        self.directions = np.array([along, normal] if d == 2 else np.eye(3))
 
     def along(self, path):
-        """Follow a path, shape (n, d): ways along the face, then the opening. Returns push and drag at each pose."""
+        """Follow a path, shape (n, d): displacements along the face, then the opening. Returns push and drag."""
         pushes, drags = [], []
-        for place in np.asarray(path) @ self.ways:
+        for place in np.asarray(path) @ self.directions:
             self.body["velocity"][0] = (place - self.at) / self.h
             self.at = place
             self.move()

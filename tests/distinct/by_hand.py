@@ -30,7 +30,7 @@ MOVED, MOVING = np.array([[0.01, -0.02, 0.03]]), np.array([[0.3, -0.1, 0.2]])
 
 
 def system(d, lines=1, edges=0, still=False):
-    """Two bodies in general motion, or still and not turned, a support, and rows for lines and their ways and bonds."""
+    """Two bodies in general motion, or still and not turned, a support, and rows for lines, tangents and bonds."""
     kind, which = kinds(d), [0, 2] if d == 2 else [0, 1, 2]
     bodies = rows(kind.body, 2, mass=MASSES, inverse_mass=1 / MASSES[:, None], rest=REST[:, which])
     bodies["place"] = PLACE[:, which]

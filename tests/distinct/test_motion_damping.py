@@ -50,5 +50,11 @@ def test_each_force_that_is_not_balanced_loses_a_share_against_the_motion(d):
 
 def test_local_damping_of_rigid_friction_is_refused():
     case = mr.MasonryCase(mr.Masonry.column(0.5, 1.0, 1, k_n=1e8), 0.01)
-    with pytest.raises(ValueError, match=r"local_damping = 0\.5 needs joints with a shear stiffness"):
+    with pytest.raises(
+        ValueError, match=r"local_damping = 0\.5 needs joints with a shear .*: take mass_damping, or masonry"
+    ):
         mr.solve_explicit(case, local_damping=0.5)
+    wall = mr.Block.from_size(0.5, 2.0)
+    contacts = mr.Contacts.from_damping(wall, k_base=1e9, xi_base=0.05, k_side=1e9, xi_side=0.05)
+    with pytest.raises(ValueError, match=r"local_damping = 0\.5 needs joints .* take mass_damping"):
+        mr.solve_explicit(mr.Case(wall, duration=0.01), contacts, local_damping=0.5)

@@ -79,7 +79,7 @@ def test_a_promise_can_be_broken(monkeypatch):
 
 
 def test_a_base_too_soft_to_stand_on_is_refused_with_the_least_that_holds(wall):
-    with pytest.raises(ValueError, match="cannot hold the wall upright; the valid range is k_n >"):
+    with pytest.raises(ValueError, match="cannot hold the wall upright; the valid range is k_base >"):
         mr.Contacts.from_damping(wall, k_base=1e6, xi_base=0.05)
 
 

@@ -150,6 +150,8 @@ CANNOT_BE = (
         r"law = 'a\\x00b' of type str has a NUL",
     ),
     (lambda: contacts(law=lambda wall, e, k_base: "x"), "law = .* to give two numbers: it gives 'x' of type str"),
+    (lambda: contacts(law=lambda wall, e: (0.05, 0.05)), r"law = .* is not called as law\(wall, e, k_base\)"),
+    (lambda: contacts(law=lambda wall, e, k_base: None + k_base), "^unsupported operand"),  # a fault of the law's own
     (lambda: contacts(law=lambda wall, e, k_base: 0.05), "law = .* to give two numbers: it gives 0.05"),
     (lambda: mr.contact_for(None, 0, 1, k=1.0, c=Unspeakable(), xi=0.1), "model = None"),
     (

@@ -404,7 +404,7 @@ def test_the_saved_scene_is_the_one_that_ran(tmp_path, one_sided, contacts):
     ("options", "complaint"),
     [
         (["--thickness", "600"], "thickness = 600 m is outside the valid range"),
-        (["--k-base", "500"], "k_n = 500 N/m3"),
+        (["--k-base", "500"], "k_base = 500 N/m3"),
         (["--release", "30"], "theta0 = 4.25691 rad is outside the valid range"),
         (["--lumped", "0.4"], "lumped restitution = 0.4"),
         (["--timestep", "-1"], "timestep = -1 s"),

@@ -193,7 +193,7 @@ def test_a_motion_is_written_as_it_is_read(tmp_path):
     [{"NETWORK": "I\nT"}, {"NETWORK": "I\rT"}, {"network": "IT"}, {"A B": "IT"}, {f"A{i}": "" for i in range(70)}],
 )
 def test_a_header_that_no_file_can_have(tmp_path, field):
-    with pytest.raises(ValueError, match="at most 58 fields of one line"):
+    with pytest.raises(ValueError, match="at most 58 fields, each one line NAME: value with its name in capitals"):
         mr.GroundMotion.sine(1.0, 1.0).to_esm(tmp_path / "a.asc", **field)
 
 

@@ -94,7 +94,7 @@ def test_a_report_of_checks_alone_has_no_word_of_runs(alone):
 
 
 def test_a_report_of_nothing_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="responses is empty; give responses, or checks or sections"):
+    with pytest.raises(ValueError, match="responses is empty; give at least one response, or checks, or sections"):
         mr.report(case_of(BARE), (), tmp_path / "a.html")
 
 

@@ -23,6 +23,7 @@ from ...quantities import (
     require_real,
     require_text,
     shown,
+    takes,
     warn_of,
     within_ranges,
 )
@@ -37,9 +38,9 @@ PointCount = Annotated[int, Within(2, 1000, name="contact points", whole=True)]
 """Contact lines of a face."""
 InterfaceStiffness = Annotated[float, Within(1e4, 1e14, "N/m3", "interface stiffness k_n")]
 """Stiffness of an interface."""
-BaseStiffness = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_n")]
+BaseStiffness = Annotated[float, Within(1e4, 1e14, "N/m3", "base stiffness k_base")]
 """Stiffness of the base of a wall."""
-SideStiffness = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_n")]
+SideStiffness = Annotated[float | None, Within(1e4, 1e14, "N/m3", "side stiffness k_side")]
 """Stiffness of the side stop of a wall, None without one."""
 FaceFriction = Annotated[float | None, Within(0, 10)]
 """Coefficient of friction of an interface, see `Interface`."""
@@ -170,10 +171,9 @@ class Interface:
 def _predicted(law: DampingFunction, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
     """The two damping ratios of a law of the user, or a TypeError that names the law."""
     refusal = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
-    try:
-        returned: object = law(wall, e, k_base)
-    except TypeError as error:
-        raise TypeError(f"{refusal}: {error}") from None
+    if not takes(law, 3):
+        raise TypeError(refusal)
+    returned: object = law(wall, e, k_base)
     if not is_iterable(returned) or not isinstance(returned, Sequence | np.ndarray) or len(returned) != 2:
         raise TypeError(f"{refusal}: it gives {shown(returned)}")
     xi_base, xi_side = returned
@@ -278,8 +278,8 @@ class Contacts:
         if base.K_rot <= overturning:
             least = k_base * overturning / base.K_rot
             raise ValueError(
-                f"base stiffness k_n = {k_base:g} N/m3 cannot hold the wall upright; "
-                f"the valid range is k_n > {least:.3g} N/m3"
+                f"base stiffness k_base = {k_base:g} N/m3 cannot hold the wall upright; "
+                f"the valid range is k_base > {least:.3g} N/m3"
             )
         return cls(base, side, law, stop_top=stop_top)
 
@@ -335,9 +335,9 @@ class Contacts:
             warn_of(unlikely, Implausible)
         if k_side is not None and (rebound := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
             warn_of(
-                f"no rebound can lift an edge as e asks for it from {amplitude:g} alpha: it would turn the wall "
-                f"{rebound:.2g} times as far as it takes to lift one off a base of {k_base:g} N/m3; the rebound is then"
-                f" elastic or larger than required. Give a base above {k_base / max(rebound, 1e-9):.2g} N/m3"
+                f"the base is too soft for the rebound that e requires from {amplitude:g} alpha: it would turn the "
+                f"wall by {rebound:.2g} of the rotation that lifts an edge off a base of {k_base:g} N/m3. The rebound "
+                f"is then elastic or larger than required. Give a base above {k_base / max(rebound, 1e-9):.2g} N/m3"
             )
         name = getattr(law, "name", getattr(law, "__name__", "given"))
         return cls.from_damping(

@@ -156,7 +156,10 @@ def esm_text(accel: Array, dt: float, header: Mapping[str, str]) -> str:
     lines = [f"{name}: {value}" for name, value in fields.items()]
     fit = all(ESM_FIELD.fullmatch(line) and not BREAK.search(line) for line in lines)
     if len(lines) != ESM_LINES or not fit or any(name != name.upper() for name in fields):
-        raise ValueError(f"header = {in_message(str(dict(header)))}: at most 58 fields of one line, as in an ESM file")
+        raise ValueError(
+            f"header = {in_message(str(dict(header)))}: at most {ESM_LINES - len(stated)} fields, each one line "
+            "NAME: value with its name in capitals, as in an ESM file"
+        )
     return "\n".join([*lines, *(repr(value) for value in (accel / ESM_UNITS["cm/s^2"]).tolist())]) + "\n"
 
 
