@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ._version import __version__
-from .command_line import Answer, Status, complain, parser
+from .command_line import Answer, Status, complain, parser_of
 from .contacts.files import aligned
 from .notice import collect_warnings, notice
 
@@ -20,12 +20,23 @@ class Command(NamedTuple):
     """A command.
 
     Args:
-        module: whose function `answer` takes the arguments of the command and returns an `Answer`.
+        module: whose function `answer` takes the arguments of the command and returns an `Answer`; in `contacts`, which
+            is a package of its own too, it takes what a parser with its `add_arguments` has read, and returns a text.
         line: what it does.
     """
 
     module: str
     line: str
+
+    def answer(self, name: str, arguments: Sequence[str]) -> Answer:
+        """What the command answers under its name."""
+        module = importlib.import_module(self.module, "mjrock")
+        if not self.module.startswith(".contacts."):
+            answer: Answer = module.answer(arguments)
+            return answer
+        parser = parser_of(name, (module.__doc__ or "").splitlines()[0])
+        module.add_arguments(parser)
+        return Answer(module.answer(parser.parse_args(arguments)))
 
 
 COMMANDS = {
@@ -40,8 +51,8 @@ COMMANDS = {
     "app": Command(".app.command", "a form in the browser: checks, runs and reports, on this machine alone"),
     "compile": Command(".study.compilation", "compile the loops of all solvers and store them, once"),
     "status": Command(".study.campaign.progress", "how far a campaign is, from its store"),
-    "inspect": Command(".commands.inspect_contacts", "contacts of a MuJoCo model in physical units"),
-    "measure": Command(".commands.measure_contact", "drop, press and push a contact of a MuJoCo model, and compare"),
+    "inspect": Command(".contacts.command", "contacts of a MuJoCo model in physical units"),
+    "measure": Command(".contacts.measure_command", "drop, press and push a contact of a MuJoCo model, and compare"),
 }
 """Every command, in the order of the help."""
 STATUSES = "Exit status: 0 holds or done, 1 does not hold, 2 error, 130 interrupted."
@@ -50,21 +61,20 @@ STATUSES = "Exit status: 0 holds or done, 1 does not hold, 2 error, 130 interrup
 def commands() -> str:
     """The commands, a line each."""
     lines = aligned([("", name, command.line) for name, command in COMMANDS.items()], "<")
-    return "\n".join(["commands:", *(line.rstrip() for line in lines)])
+    return "\n".join(["commands:", *lines])
 
 
-def answered(given: Sequence[str]) -> Answer:
+def answered(arguments: Sequence[str]) -> Answer:
     """What the command that is named answers; without one, the help."""
-    made = parser("", "Rocking masonry in MuJoCo, by explicit steps and by theory. Commands that need no script.")
-    made.prog, made.usage = "mjrock", "mjrock COMMAND ..."
-    made.epilog = f"{commands()}\n\nmjrock COMMAND --help describes a command.\n{STATUSES}"
-    made.add_argument("--version", action="version", version=f"mjrock {__version__}", help="print the version")
-    made.add_argument("command", choices=COMMANDS, metavar="COMMAND", help=SUPPRESS)
-    if not given:
-        return Answer(made.format_help().rstrip())
-    command = COMMANDS[made.parse_args(given[:1]).command]
-    answer: Answer = importlib.import_module(command.module, "mjrock").answer(given[1:])
-    return answer
+    parser = parser_of("", "Rocking masonry in MuJoCo, by explicit steps and by theory. Commands that need no script.")
+    parser.prog, parser.usage = "mjrock", "mjrock COMMAND ..."
+    parser.epilog = f"{commands()}\n\nmjrock COMMAND --help describes a command.\n{STATUSES}"
+    parser.add_argument("--version", action="version", version=f"mjrock {__version__}", help="print the version")
+    parser.add_argument("command", choices=COMMANDS, metavar="COMMAND", help=SUPPRESS)
+    if not arguments:
+        return Answer(parser.format_help().rstrip())
+    name = parser.parse_args(arguments[:1]).command
+    return COMMANDS[name].answer(name, arguments[1:])
 
 
 def leave_output() -> None:

@@ -46,7 +46,7 @@ class Help(argparse.RawDescriptionHelpFormatter):
         super().__init__(prog, width=min(WIDEST, shutil.get_terminal_size().columns - 2))
 
 
-def parser(name: str, description: str, epilog: str = "") -> argparse.ArgumentParser:
+def parser_of(name: str, description: str, epilog: str = "") -> argparse.ArgumentParser:
     """The parser of a command.
 
     Args:
@@ -57,17 +57,17 @@ def parser(name: str, description: str, epilog: str = "") -> argparse.ArgumentPa
     return argparse.ArgumentParser(f"mjrock {name}", description=description, epilog=epilog, formatter_class=Help)
 
 
-def add_output(made: argparse.ArgumentParser, what: str, default: str = "") -> None:
+def add_output(parser: argparse.ArgumentParser, what: str, default: str = "") -> None:
     """Add `--output` and `--force`.
 
     Args:
-        made: the parser.
+        parser: of the command.
         what: what the file or folder is, in words.
         default: where it is without `--output`, in words.
     """
     text = f"{what}; without it {default}" if default else what
-    made.add_argument("-o", "--output", type=Path, metavar="PATH", help=text)
-    made.add_argument("-f", "--force", action="store_true", help="replace files that exist")
+    parser.add_argument("-o", "--output", type=Path, metavar="PATH", help=text)
+    parser.add_argument("-f", "--force", action="store_true", help="replace files that exist")
 
 
 def ruled(rows: Sequence[Sequence[str]], sides: str) -> list[str]:
@@ -77,7 +77,7 @@ def ruled(rows: Sequence[Sequence[str]], sides: str) -> list[str]:
         rows: cells; the first row has the heads.
         sides: of each column, "<" or ">".
     """
-    head, *body = (line.rstrip() for line in aligned(rows, sides))
+    head, *body = aligned(rows, sides)
     return [head, "-" * max(map(len, (head, *body))), *body]
 
 

@@ -6,7 +6,7 @@ import contextlib
 import webbrowser
 from collections.abc import Sequence
 
-from ..command_line import Answer, parser
+from ..command_line import Answer, parser_of
 from ..notice import notice
 from ..quantities import require_within
 from .server import FormServer
@@ -20,10 +20,10 @@ def answer(argv: Sequence[str]) -> Answer:
         OSError: if the port is taken.
         ValueError: for a port out of its range.
     """
-    made = parser("app", "A form in the browser: checks, runs and reports, on this machine alone. Ctrl-C ends it.")
-    made.add_argument("--port", type=int, help="of the server, 1024 to 65535; a free one where it is left out")
-    made.add_argument("--no-browser", action="store_true", help="write the address, and open no browser")
-    options = made.parse_args(argv)
+    parser = parser_of("app", "A form in the browser: checks, runs and reports, on this machine alone. Ctrl-C ends it.")
+    parser.add_argument("--port", type=int, help="of the server, 1024 to 65535; a free one where it is left out")
+    parser.add_argument("--no-browser", action="store_true", help="write the address, and open no browser")
+    options = parser.parse_args(argv)
     port = 0 if options.port is None else int(require_within("--port", options.port, 1024, 65535))
     team = Team(f"{__package__}.tasks")
     try:

@@ -7,9 +7,9 @@ import math
 from collections.abc import Mapping, Sequence
 
 from ..assessment.assessment import Assessment
-from ..command_line import Answer, Status, complain, parser, ruled
+from ..command_line import Answer, Status, complain, parser_of, ruled
 from ..contacts.files import aligned
-from ..reporting.texts import FOUND, Words, languages
+from ..reporting.texts import FOUND, Words
 from ..reporting.verdicts import (
     CONDITION_COLUMNS,
     Mechanism,
@@ -20,18 +20,20 @@ from ..reporting.verdicts import (
     sentence_of,
 )
 from ..study.loading.mechanism_check import MechanismCheck
-from .opened import FILE_HELP, MENDABLE, named_checks, opened
+from .assessment_file import MENDABLE, add_file, assessment_of_file, named_checks
 
 
 def table_of(mechanisms: Sequence[Mechanism], words: Words) -> str:
     """The conditions of all mechanisms, that with the least ratio first, and what governs."""
-    order = ranked(mechanisms)
+    ranked_mechanisms = ranked(mechanisms)
     rows = [[words(f"verdict_{head}") for head in CONDITION_COLUMNS]]
-    for mechanism in order:
+    for mechanism in ranked_mechanisms:
         for i, verdict in enumerate(mechanism.verdicts):
             rows.append([mechanism.name * (i == 0), *conditions(verdict, words)])
-    sentence = sentence_of(order[0], "lead_governs" if order[1:] else "lead_alone", words)
-    return "\n".join([*ruled(rows, "<<<>>><<"), "", " ".join([sentence.start, sentence.end, *counted(order, words)])])
+    sentence = sentence_of(ranked_mechanisms[0], "lead_governs" if ranked_mechanisms[1:] else "lead_alone", words)
+    return "\n".join(
+        [*ruled(rows, "<<<>>><<"), "", " ".join([sentence.start, sentence.end, *counted(ranked_mechanisms, words)])]
+    )
 
 
 def steps_of(check: MechanismCheck, words: Words) -> list[str]:
@@ -41,10 +43,10 @@ def steps_of(check: MechanismCheck, words: Words) -> list[str]:
         ratio = step.key.endswith("ratio")
         value = words.ratio(step.value) if ratio else words.quantity(step.value, step.unit, FOUND)
         rows.append((check.code.step(step.key, step.of).text[words.language], value, step.clause))
-    return [line.rstrip() for line in aligned(rows, "<><")]
+    return aligned(rows, "<><")
 
 
-def plain(name: str, file: str, check: MechanismCheck) -> dict[str, object]:
+def check_for_programs(name: str, file: str, check: MechanismCheck) -> dict[str, object]:
     """A check for other programs: numbers in SI units, None for what is infinite.
 
     Args:
@@ -56,14 +58,15 @@ def plain(name: str, file: str, check: MechanismCheck) -> dict[str, object]:
     def number(value: float) -> float | None:
         return float(value) if math.isfinite(value) else None
 
-    found = [
-        one._asdict() | {"demand": number(one.demand), "capacity": number(one.capacity)} | {"ratio": number(one.ratio)}
-        | {"holds": one.holds}
-        for one in check.verdicts
-    ]  # fmt: skip
-    steps = [one._asdict() | {"value": number(one.value)} for one in check.steps]
-    holds = all(one.holds for one in check.verdicts)
-    return {"file": file, "mechanism": name, "holds": holds, "conditions": found, "steps": steps}
+    conditions = [
+        verdict._asdict()
+        | {key: number(getattr(verdict, key)) for key in ("demand", "capacity", "ratio")}
+        | {"holds": verdict.holds}
+        for verdict in check.verdicts
+    ]
+    steps = [step._asdict() | {"value": number(step.value)} for step in check.steps]
+    holds = all(verdict.holds for verdict in check.verdicts)
+    return {"file": file, "mechanism": name, "holds": holds, "conditions": conditions, "steps": steps}
 
 
 def verdict_on(assessment: Assessment, checks: Mapping[str, MechanismCheck], steps: bool) -> str:
@@ -76,11 +79,11 @@ def verdict_on(assessment: Assessment, checks: Mapping[str, MechanismCheck], ste
     """
     words = Words(assessment.language)
     mechanisms = required_checks(named_checks(checks, words), "")
-    text = [assessment.name, table_of(mechanisms, words)]
-    for one in mechanisms if steps else ():
-        if one.kinematic is not None:
-            text += ["", one.name, *steps_of(one.kinematic, words)]
-    return "\n".join(text)
+    lines = [assessment.name, table_of(mechanisms, words)]
+    for mechanism in mechanisms if steps else ():
+        if mechanism.kinematic is not None:
+            lines += ["", mechanism.name, *steps_of(mechanism.kinematic, words)]
+    return "\n".join(lines)
 
 
 def answer(argv: Sequence[str]) -> Answer:
@@ -89,26 +92,25 @@ def answer(argv: Sequence[str]) -> Answer:
     Raises:
         ValueError: for a language that there is not.
     """
-    made = parser("check", "Check the mechanisms of files, those with the least ratio of capacity over demand first.")
-    made.add_argument("files", nargs="+", metavar="FILE", help=FILE_HELP)
-    made.add_argument("-s", "--steps", action="store_true", help="every step with its clause too")
-    made.add_argument("-l", "--language", choices=languages(), help="instead of that of the file")
-    made.add_argument("-j", "--json", action="store_true", help="for other programs, in SI units")
-    args = made.parse_args(argv)
+    parser = parser_of("check", "Check the mechanisms of files, the least ratio of capacity over demand first.")
+    add_file(parser, several=True)
+    parser.add_argument("-s", "--steps", action="store_true", help="every step with its clause too")
+    parser.add_argument("-j", "--json", action="store_true", help="for other programs, in SI units")
+    args = parser.parse_args(argv)
     texts: list[str] = []
-    found: list[dict[str, object]] = []
+    plain_checks: list[dict[str, object]] = []
     status = Status.HOLDS
     for file in args.files:
         try:
-            assessment = opened(file, args.language)
+            assessment = assessment_of_file(file, args.language)
             checks = assessment.check()
             texts.append(verdict_on(assessment, checks, args.steps))
         except MENDABLE as error:
             complain(error)
             status = Status.ERROR
             continue
-        found += [plain(name, file, check) for name, check in checks.items()]
-    if status is Status.HOLDS and not all(one["holds"] for one in found):
+        plain_checks += [check_for_programs(name, file, check) for name, check in checks.items()]
+    if status is Status.HOLDS and not all(check["holds"] for check in plain_checks):
         status = Status.FAILS
-    text = json.dumps(found, indent=1, ensure_ascii=False) if args.json else "\n\n".join(texts)
+    text = json.dumps(plain_checks, indent=1, ensure_ascii=False) if args.json else "\n\n".join(texts)
     return Answer(text, status)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..command_line import Answer, add_output, parser, require_free
+from ..command_line import Answer, add_output, parser_of, require_free
 from ..contacts.files import write_text
 from ..engine.simulation import simulate
 from ..engine.text import wall_mjcf
@@ -27,11 +27,11 @@ from ..theory.analytical import solve_analytical
 
 FILES = ("scene.xml", "comparison.csv", "comparison.png")
 """What is written: the model that ran, the impacts, and the picture."""
-LEAST = 0.05
+LEAST_ENERGY_STEP = 0.05
 """Least step of the energy that is marked, over the first energy [-]."""
 
 
-def drawn(case: Case, responses: Sequence[Response], title: str) -> Figure:
+def comparison_figure(case: Case, responses: Sequence[Response], title: str) -> Figure:
     """Rotation and energy until the wall is at rest, |e| at the steps of the energy, and the wall.
 
     Args:
@@ -40,17 +40,19 @@ def drawn(case: Case, responses: Sequence[Response], title: str) -> Figure:
         title: of the figure.
     """
     figure = comparison(responses, title)
-    above, below = figure.axes
+    rotation_axes, energy_axes = figure.axes
     theory = responses[0]
     assert theory.rocking is not None
-    moving = np.flatnonzero(np.abs(theory.theta) > 1e-3 * theory.of_wall[0].wall.alpha)
-    below.set_xlim(0, min(theory.t[-1], 1.3 * theory.t[moving[-1]]))
+    moving_samples = np.flatnonzero(np.abs(theory.theta) > 1e-3 * theory.of_wall[0].wall.alpha)
+    energy_axes.set_xlim(0, min(theory.t[-1], 1.3 * theory.t[moving_samples[-1]]))
     for impact in theory.impacts:
-        if impact.energy_before > LEAST * theory.energy[0]:
-            at = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
+        if impact.energy_before > LEAST_ENERGY_STEP * theory.energy[0]:
+            place = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
             text = f"$|e|$ = {abs(impact.restitution):.2f}"
-            below.annotate(text, at, (6, 0), textcoords="offset points", va="center", fontsize=8, color="0.2", zorder=6)
-    inset = above.inset_axes((0.72, 0.16, 0.28, 0.82))
+            energy_axes.annotate(
+                text, place, (6, 0), textcoords="offset points", va="center", fontsize=8, color="0.2", zorder=6
+            )
+    inset = rotation_axes.inset_axes((0.72, 0.16, 0.28, 0.82))
     section(inset, case)
     inset.axis("off")
     return figure
@@ -102,14 +104,14 @@ def compared(
     write_text(model, wall_mjcf(case, contacts, step))
     write_text(table, impacts.csv())
     title = f"2h = {2 * case.wall.h:g} m, 2b = {2 * case.wall.b:g} m, {'one' if case.side_stop else 'two'}-sided"
-    save(drawn(case, responses, title), picture)
+    save(comparison_figure(case, responses, title), picture)
     longest = engine.stats["longest_timestep"]
     lengths = f"{step * 1e3:.3g} ms" if steps.timestep else f"{step * 1e3:.3g} to {longest * 1e3:.3g} ms"
-    took = f"MuJoCo: {engine.stats['steps']} steps of {lengths} in {engine.stats['wall_time']:.3f} s"
-    lines = [took, "", impacts.table()]
+    run_line = f"MuJoCo: {engine.stats['steps']} steps of {lengths} in {engine.stats['wall_time']:.3f} s"
+    lines = [run_line, "", impacts.table()]
     if check:
-        also = compare(responses[2], engine).table()
-        lines += ["", "The same contact law solved by SciPy, against MuJoCo:", "", also]
+        scipy_table = compare(responses[2], engine).table()
+        lines += ["", "The same contact law solved by SciPy, against MuJoCo:", "", scipy_table]
     return "\n".join([*lines, "", f"written: {', '.join(str(folder / name) for name in FILES)}"])
 
 
@@ -119,9 +121,9 @@ def answer(argv: Sequence[str]) -> Answer:
     Raises:
         OSError: if a file cannot be written, or is there and may not be replaced.
     """
-    made = parser("demo", "Release a wall of 0.6 x 4.2 m against its side walls, in MuJoCo and by rocking theory.")
-    add_output(made, "folder of the model, the table and the picture", "mjrock-demo")
-    args = made.parse_args(argv)
+    parser = parser_of("demo", "Release a wall of 0.6 x 4.2 m against its side walls, in MuJoCo and by rocking theory.")
+    add_output(parser, "folder of the model, the table and the picture", "mjrock-demo")
+    args = parser.parse_args(argv)
     folder = args.output or Path("mjrock-demo")
     for name in FILES:
         require_free(folder / name, args.force)

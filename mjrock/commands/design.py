@@ -1,13 +1,13 @@
-"""`mjrock design`: the first of the values of a file for which every condition holds."""
+"""`mjrock design`: the first of the values of a file that meets every condition."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..command_line import Answer, Status, parser, ruled
-from ..reporting.texts import Words, languages
+from ..command_line import Answer, Status, parser_of, ruled
+from ..reporting.texts import Words
 from ..reporting.verdicts import design_rows, design_sentence
-from .opened import FILE_HELP, opened
+from .assessment_file import add_file, assessment_of_file
 
 
 def answer(argv: Sequence[str]) -> Answer:
@@ -17,11 +17,10 @@ def answer(argv: Sequence[str]) -> Answer:
         OSError: if the file cannot be read.
         ValueError: for a file that is wrong, or has nothing to design.
     """
-    made = parser("design", "Find the first value of the table [design] of a file for which every condition holds.")
-    made.add_argument("file", metavar="FILE", help=FILE_HELP)
-    made.add_argument("-l", "--language", choices=languages(), help="instead of that of the file")
-    args = made.parse_args(argv)
-    assessment = opened(args.file, args.language)
+    parser = parser_of("design", "Find the first value of the table [design] of a file that meets every condition.")
+    add_file(parser)
+    args = parser.parse_args(argv)
+    assessment = assessment_of_file(args.file, args.language)
     design, words = assessment.design(), Words(assessment.language)
     text = "\n".join([*ruled(design_rows(design, words), "<><<<"), "", design_sentence(design, words)])
     return Answer(text, Status.FAILS if design.chosen is None else Status.HOLDS)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..command_line import Answer, add_output, parser, require_free
+from ..command_line import Answer, add_output, parser_of, require_free
 from ..contacts.files import aligned, write_text
 
 FOLDER = Path(__file__).parents[1] / "examples"
@@ -40,7 +40,7 @@ def examples() -> list[Example]:
     return [Example(path, title.partition(". ")[2]) for path, title in zip(paths, titles, strict=True)]
 
 
-def found(name: str) -> Example:
+def example_named(name: str) -> Example:
     """The example of a number, or of a name with or without its number.
 
     Raises:
@@ -55,7 +55,7 @@ def found(name: str) -> Example:
     raise ValueError(f"there is no example {name!r}; give a number from 1 to {len(known)} or one of {names}")
 
 
-def cells(text: str) -> Iterator[str]:
+def cells_of(text: str) -> Iterator[str]:
     """The cells of a script, each below as many empty lines as stand before it, for the numbers of its lines."""
     before = 0
     for cell in text.split(CELL):
@@ -87,7 +87,7 @@ def run(example: Example, folder: Path, force: bool) -> list[Path]:
     written: list[Path] = []
     for ending in ("_1.png", ".html"):
         require_free(folder / f"{example.path.stem}{ending}", force)
-    for cell in cells(example.text):
+    for cell in cells_of(example.text):
         exec(compile(cell, example.path, "exec"), names)
         sys.stdout.flush()
         figure = names.pop("figure", None)
@@ -95,9 +95,9 @@ def run(example: Example, folder: Path, force: bool) -> list[Path]:
             folder.mkdir(parents=True, exist_ok=True)
             path = folder / f"{example.path.stem}_{len(written) + 1}.png"
             written.append(save(figure, require_free(path, force)))
-    shown = names.get("answer")
-    if isinstance(shown, Response):
-        written.append(view(shown, require_free(folder / f"{example.path.stem}.html", force)))
+    response = names.get("answer")
+    if isinstance(response, Response):
+        written.append(view(response, require_free(folder / f"{example.path.stem}.html", force)))
     return written
 
 
@@ -108,15 +108,15 @@ def answer(argv: Sequence[str]) -> Answer:
         ValueError: for an example that is not there.
         OSError: if a file cannot be written, or is there and may not be replaced.
     """
-    made = parser("examples", "List the examples, run one, which prints, draws and writes a page, or copy its script.")
-    made.add_argument("name", nargs="?", help="its number or name, such as 7 or push_over; none lists them")
-    made.add_argument("-c", "--copy", action="store_true", help="write the script, to be changed, and do not run it")
-    add_output(made, "folder of the pictures and the page, or of the script", "the current one")
-    args = made.parse_args(argv)
+    parser = parser_of("examples", "List the examples, run one, which prints, draws and writes a page, or copy it.")
+    parser.add_argument("name", nargs="?", help="its number or name, such as 7 or push_over; none lists them")
+    parser.add_argument("-c", "--copy", action="store_true", help="write the script, to be changed, and do not run it")
+    add_output(parser, "folder of the pictures and the page, or of the script", "the current one")
+    args = parser.parse_args(argv)
     if args.name is None:
-        listed = aligned([(one.path.stem, one.title) for one in examples()], "<")
-        return Answer("\n".join([*(line.rstrip() for line in listed), "", "mjrock examples NAME runs one."]))
-    example, folder = found(args.name), args.output or Path()
+        lines = aligned([(one.path.stem, one.title) for one in examples()], "<")
+        return Answer("\n".join([*lines, "", "mjrock examples NAME runs one."]))
+    example, folder = example_named(args.name), args.output or Path()
     if args.copy:
         folder.mkdir(parents=True, exist_ok=True)
         written = write_text(require_free(folder / example.path.name, args.force), example.text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..assessment.templates import seeds, template
-from ..command_line import Answer, add_output, parser, require_free
+from ..command_line import Answer, add_output, parser_of, require_free
 from ..contacts.files import aligned, write_text
 
 
@@ -16,13 +16,13 @@ def answer(argv: Sequence[str]) -> Answer:
         OSError: if the file cannot be written, or is there and may not be replaced.
     """
     known = seeds()
-    made = parser("new", "Write a file of a mechanism that can be checked as it is, to be changed.")
-    made.add_argument("name", nargs="?", choices=known, metavar="TEMPLATE", help="what it is of; none lists them")
-    add_output(made, "the file", "the standard output")
-    args = made.parse_args(argv)
+    parser = parser_of("new", "Write a file of a mechanism that can be checked as it is, to be changed.")
+    parser.add_argument("name", nargs="?", choices=known, metavar="TEMPLATE", help="what it is of; none lists them")
+    add_output(parser, "the file", "the standard output")
+    args = parser.parse_args(argv)
     if args.name is None:
-        listed = aligned([(name, values["title"]) for name, values in known.items()], "<")
-        return Answer("\n".join([*(line.rstrip() for line in listed), "", "mjrock new TEMPLATE -o FILE writes one."]))
+        lines = aligned([(name, values["title"]) for name, values in known.items()], "<")
+        return Answer("\n".join([*lines, "", "mjrock new TEMPLATE -o FILE writes one."]))
     text = template(args.name)
     if args.output is None:
         return Answer(text.rstrip("\n"))

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..bars import counted
-from ..command_line import Answer, add_output, parser, require_free
+from ..command_line import Answer, add_output, parser_of, require_free
 from ..reporting.markup import pdf_writer
-from ..reporting.texts import languages
-from .opened import FILE_HELP, INPUT, opened, tasks_of
+from .assessment_file import INPUT, add_file, assessment_of_file, runs_of
 
 
 def answer(argv: Sequence[str]) -> Answer:
@@ -20,17 +19,18 @@ def answer(argv: Sequence[str]) -> Answer:
         OSError: if a file cannot be read or written, or is there and may not be replaced.
         ImportError: for a PDF without WeasyPrint.
     """
-    made = parser("report", "Write the report of a file: its checks step by step, every input, and its runs.")
-    made.add_argument("file", metavar="FILE", help=FILE_HELP)
-    add_output(made, "the report, which ends in .html or .pdf", "FILE with the ending .html")
-    made.add_argument("-l", "--language", choices=languages(), help="instead of that of the file")
-    made.add_argument("--no-runs", action="store_true", help="leave out the runs")
-    args = made.parse_args(argv)
+    parser = parser_of("report", "Write the report of a file: its checks step by step, every input, and its runs.")
+    add_file(parser)
+    add_output(parser, "the report, which ends in .html or .pdf", "FILE with the ending .html")
+    parser.add_argument("--no-runs", action="store_true", help="leave out the runs")
+    args = parser.parse_args(argv)
     path = args.output or Path("report.html" if args.file == INPUT else args.file).with_suffix(".html")
     require_free(path, args.force)
     if path.suffix.lower() == ".pdf":
         pdf_writer()  # before anything is run
-    assessment = opened(args.file, args.language)
-    tasks = {} if args.no_runs else tasks_of(assessment)
-    runs = {name: [task.solve() for task in counted(some, name or "runs", "runs")] for name, some in tasks.items()}
-    return Answer(f"written: {assessment.report(path, runs or None)}")
+    assessment = assessment_of_file(args.file, args.language)
+    runs_by_name = {} if args.no_runs else runs_of(assessment)
+    responses = {
+        name: [run.solve() for run in counted(runs, name or "runs", "runs")] for name, runs in runs_by_name.items()
+    }
+    return Answer(f"written: {assessment.report(path, responses or None)}")

@@ -153,19 +153,19 @@ PAGE = 40
 """Rows that fill a page."""
 
 
-def add_arguments(made: argparse.ArgumentParser) -> None:
+def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command to a parser."""
-    made.add_argument("model", type=Path, help="MJCF or URDF file, or a compiled .mjb")
-    made.add_argument("--geom", action="append", default=[], help="contacts of a geom, such as 'foot*'")
-    made.add_argument("--body", action="append", default=[], help="contacts of a body")
-    made.add_argument("--pair", nargs=2, metavar=("A", "B"), help="contacts of two geoms or bodies")
-    made.add_argument("--pairs", action="store_true", help="explicit pairs only")
-    made.add_argument("--contacts", type=int, help="points that share the mass, instead of those counted")
-    made.add_argument("--keyframe", help="keyframe in which the geoms meet, by name or number")
-    made.add_argument("--load", type=float, help="static load of a contact point [N], instead of the weight")
-    made.add_argument("--speed", type=float, default=1.0, help="speed of approach of the last e of --all [m/s]")
-    made.add_argument("--all", action="store_true", help=f"every row and column, not the worst {PAGE}")
-    made.add_argument("--csv", type=Path, help="a file for every row that is chosen, with its notes")
+    parser.add_argument("model", type=Path, help="MJCF or URDF file, or a compiled .mjb")
+    parser.add_argument("--geom", action="append", default=[], help="contacts of a geom, such as 'foot*'")
+    parser.add_argument("--body", action="append", default=[], help="contacts of a body")
+    parser.add_argument("--pair", nargs=2, metavar=("A", "B"), help="contacts of two geoms or bodies")
+    parser.add_argument("--pairs", action="store_true", help="explicit pairs only")
+    parser.add_argument("--contacts", type=int, help="points that share the mass, instead of those counted")
+    parser.add_argument("--keyframe", help="keyframe in which the geoms meet, by name or number")
+    parser.add_argument("--load", type=float, help="static load of a contact point [N], instead of the weight")
+    parser.add_argument("--speed", type=float, default=1.0, help="speed of approach of the last e of --all [m/s]")
+    parser.add_argument("--all", action="store_true", help=f"every row and column, not the worst {PAGE}")
+    parser.add_argument("--csv", type=Path, help="a file for every row that is chosen, with its notes")
 
 
 def answer(args: argparse.Namespace) -> str:

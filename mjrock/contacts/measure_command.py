@@ -9,14 +9,14 @@ from .geoms import keyframe_argument, load
 from .measurement import measure
 
 
-def add_arguments(made: argparse.ArgumentParser) -> None:
+def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command to a parser."""
-    made.add_argument("model", type=Path, help="MJCF or URDF file, or a compiled .mjb")
-    made.add_argument("geoms", nargs=2, metavar="GEOM", help="names of the two geoms, or of bodies with one geom")
-    made.add_argument("--speed", type=float, default=1.0, help="speed of approach of the blows [m/s]")
-    made.add_argument("--duration", type=float, default=1.0, help="how long they rest, and then are pushed [s]")
-    made.add_argument("--keyframe", help="keyframe from which the geoms are moved together, by name or number")
-    made.add_argument("--picture", type=Path, help="file for a picture, which needs Matplotlib")
+    parser.add_argument("model", type=Path, help="MJCF or URDF file, or a compiled .mjb")
+    parser.add_argument("geoms", nargs=2, metavar="GEOM", help="names of the two geoms, or of bodies with one geom")
+    parser.add_argument("--speed", type=float, default=1.0, help="speed of approach of the blows [m/s]")
+    parser.add_argument("--duration", type=float, default=1.0, help="how long they rest, and then are pushed [s]")
+    parser.add_argument("--keyframe", help="keyframe from which the geoms are moved together, by name or number")
+    parser.add_argument("--picture", type=Path, help="file for a picture, which needs Matplotlib")
 
 
 def answer(args: argparse.Namespace) -> str:

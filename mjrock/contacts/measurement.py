@@ -79,7 +79,7 @@ class Measurement:
         ]
         cells = [[name, *("-" if math.isnan(each) else f"{each:.4g}" for each in both)] for name, both in rows]
         title = f"{self.contact.geom1} on {self.contact.geom2}"
-        return "\n".join(line.rstrip() for line in aligned([[title, "found", "promised"], *cells], "<>"))
+        return "\n".join(aligned([[title, "found", "promised"], *cells], "<>"))
 
     def draw(self) -> Any:
         """A figure of Matplotlib, which has to be installed: a blow, and the rest, promised values dashed."""

@@ -11,7 +11,7 @@ from time import perf_counter
 
 from ..background_compilation import compiles
 from ..bars import Bar
-from ..command_line import Answer, parser
+from ..command_line import Answer, parser_of
 from ..distinct.explicit import solve_explicit
 from ..engine.simulation import simulate
 from ..machine import cores
@@ -74,7 +74,7 @@ def answer(argv: Sequence[str]) -> Answer:
         ValueError: if there is no compiler.
     """
     what = "Compile the loops of all solvers and store them; some two minutes, once for an installation."
-    parser("compile", what).parse_args(argv)
+    parser_of("compile", what).parse_args(argv)
     if not compiles():
         raise ValueError("nothing can be compiled: numba is not installed, or NUMBA_DISABLE_JIT is set")
     from ..loop_cache import folder  # which imports numba

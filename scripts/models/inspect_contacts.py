@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from mjrock.commands import inspect_contacts as command
+from mjrock.__main__ import answered
 from scripts.models.make_models import MODELS
 from scripts.shared import cli
 
@@ -23,8 +23,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     wall = MODELS / "figure3_one_sided" / "scene.xml"
     options.add_argument("model", type=Path, nargs="?", default=wall, help="MJCF or URDF file")
     args, others = options.parse_known_args(argv)
-    arguments = [str(args.model), "--all", *(["--pairs"] if args.quick else []), *others]
-    cli.report(cli.folder(args.out) / "inspect_contacts", command.answer(arguments).text)
+    arguments = ["inspect", str(args.model), "--all", *(["--pairs"] if args.quick else []), *others]
+    cli.report(cli.folder(args.out) / "inspect_contacts", answered(arguments).text)
 
 
 if __name__ == "__main__":

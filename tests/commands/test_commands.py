@@ -150,7 +150,7 @@ def test_examples_are_listed_with_their_titles(capsys):
 
 @pytest.mark.parametrize("name", ["7", "07", "push_over", "07_push_over", "07_push_over.py"])
 def test_an_example_has_a_number_and_a_name(name):
-    assert examples_command.found(name).path.name == "07_push_over.py"
+    assert examples_command.example_named(name).path.name == "07_push_over.py"
 
 
 def test_an_example_that_is_not_there_is_refused_with_those_that_are(capsys):
@@ -186,7 +186,7 @@ def squares(tmp_path, monkeypatch):
     (tmp_path / "examples" / "01_squares.py").write_text(SCRIPT, encoding="utf-8")
     monkeypatch.setattr(examples_command, "FOLDER", tmp_path / "examples")
     monkeypatch.chdir(tmp_path / "here")
-    return examples_command.found("squares")
+    return examples_command.example_named("squares")
 
 
 def test_an_example_prints_draws_and_replaces_nothing_by_itself(squares, capsys):
@@ -211,7 +211,7 @@ def test_an_example_of_the_site_runs(tmp_path, monkeypatch, capsys):
 def test_a_copy_of_an_example_is_its_script(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert written(capsys, "examples", "dome", "--copy") == ["written: 15_dome.py"]
-    assert Path("15_dome.py").read_text(encoding="utf-8") == examples_command.found("15").text
+    assert Path("15_dome.py").read_text(encoding="utf-8") == examples_command.example_named("15").text
     assert "15_dome.py: exists already" in refused(capsys, "examples", "dome", "--copy")
     assert written(capsys, "examples", "dome", "-c", "-f") == ["written: 15_dome.py"]
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...bars import OF_ALL, PLAIN, shown_bar
-from ...command_line import Answer, parser
+from ...command_line import Answer, parser_of
 from ...notice import notice
 from .store import Store
 from .task import Row
@@ -95,9 +95,9 @@ def status(path: str | Path) -> str:
 
 def answer(argv: Sequence[str]) -> Answer:
     """The `status` of the store that is named."""
-    made = parser("status", "How far a campaign is, from its store.")
-    made.add_argument("store", help="the SQLite file of a campaign")
-    return Answer(status(made.parse_args(argv).store))
+    parser = parser_of("status", "How far a campaign is, from its store.")
+    parser.add_argument("store", help="the SQLite file of a campaign")
+    return Answer(status(parser.parse_args(argv).store))
 
 
 LINE_INTERVAL = 30.0
