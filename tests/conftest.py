@@ -52,7 +52,7 @@ def pytest_collection() -> Generator[None, object, object]:
 def _coarse_pictures() -> Generator[None, None, None]:
     """Pictures of reports are drawn and laid out as ever, with a fourth of the dots."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(markup, "DOTS", markup.DOTS / 4)
+        patch.setattr(markup, "DOTS_PER_INCH", markup.DOTS_PER_INCH / 4)
         yield
 
 

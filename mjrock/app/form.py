@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from ..assessment.sharing import Part
 from ..assessment.tables import Document, Place
-from ..reporting.page import HEADS
+from ..reporting.page import TITLE_BLOCK_KEYS
 from ..reporting.texts import MINUS, POWERS, Words, languages
 
 TEXTS = Path(__file__).with_name("texts.toml")
@@ -121,7 +121,7 @@ class Plan:
         control, variants = self._nested(kinds, f"{place}.{key}")
         choices = self._choices(plain, types)
         if control == "pairs" and key == "project":
-            choices = tuple((name, self.words(f"head_{name}")) for name in HEADS)
+            choices = tuple((name, self.words(f"head_{name}")) for name in TITLE_BLOCK_KEYS)
         if not control or (control == "table" and types - {"boolean"}):
             control = self._control(key, plain, types, bool(choices))
         number = next((one for one in plain if "unit" in one or "minimum" in one), {})

@@ -31,12 +31,12 @@ from ..bars import Progress, progress_given_to
 from ..plotting.browser import view
 from ..quantities import Message, brief, reason, require_kind, shown
 from ..reporting.content import content_of
-from ..reporting.drawings import drawn
+from ..reporting.drawings import drawing_of
 from ..reporting.markup import Markup, element
-from ..reporting.page import Request, every_run, outcomes, required_runs
+from ..reporting.page import Request, outcome_sentence, required_runs, run_tables
 from ..reporting.parts import parts_of
 from ..reporting.texts import FOUND, Words, languages
-from ..reporting.verdicts import Mechanism, answers, kinematic_steps, ranked, required_checks
+from ..reporting.verdicts import Mechanism, answer_parts, kinematic_steps, ranked, required_checks
 from ..result.response import Response
 from ..toml_text import toml_text
 from .form import HERE, TEXTS, Plan, languages_named, state_of, texts_of
@@ -112,7 +112,7 @@ def check(request: Payload, send: Send) -> None:
 def verdict(mechanisms: Sequence[Mechanism], notes: Sequence[Markup], words: Words) -> Item:
     """What holds clause by clause, what is doubtful, and the steps."""
     return {
-        "verdict": "".join([*answers(mechanisms, [], words), *notes]),
+        "verdict": "".join([*answer_parts(mechanisms, [], words), *notes]),
         "ratio": in_short(mechanisms, words),
         "steps": element("h2", words("checks")) + "".join(kinematic_steps(mechanisms, words)),
     }
@@ -126,14 +126,14 @@ def kind_named(problem: object, words: Words) -> str:
 def in_short(mechanisms: Sequence[Mechanism], words: Words) -> str:
     """Whether the mechanism with the least ratio holds, in the word of its verdict, and that ratio."""
     first = ranked(mechanisms)[0]
-    return f"{words(first.kind)} {words.ratio(first.least.ratio)}"
+    return f"{words(first.kind)} {words.ratio(first.least_verdict.ratio)}"
 
 
 def sketches(assessment: Assessment, words: Words) -> Iterator[Item]:
     """The drawing of each mechanism, with its name where there are several, and its number."""
     count = len(assessment.mechanisms)
     for number, (name, one) in enumerate(assessment.mechanisms.items()):
-        figure, caption = drawn(one.problem, words)
+        figure, caption = drawing_of(one.problem, words)
         yield {"sketch": svg_of(figure), "alt": caption, "name": name, "number": number, "count": count}
 
 
@@ -198,7 +198,7 @@ def dynamic(assessment: Assessment, responses: Mapping[str, Sequence[Response]],
     except AssessmentError:
         return []
     named = {name or kind_named(assessment.mechanisms[name].problem, words): one for name, one in checks.items()}
-    return answers(required_checks(named, ""), [], words)
+    return answer_parts(required_checks(named, ""), [], words)
 
 
 def of_runs(name: str, responses: Sequence[Response], words: Words) -> list[Markup]:
@@ -206,12 +206,12 @@ def of_runs(name: str, responses: Sequence[Response], words: Words) -> list[Mark
     case = responses[0].case
     runs = required_runs(Request(case, responses), words)
     heading = [element("h3", name)] if name else []
-    return [*heading, element("p", outcomes(runs, words)), *every_run(parts_of("", case, [], runs), words)]
+    return [*heading, element("p", outcome_sentence(runs, words)), *run_tables(parts_of("", case, [], runs), words)]
 
 
 def farthest(responses: Sequence[Response]) -> Response:
     """The response with the largest displacement."""
-    return max(responses, key=lambda one: content_of(one.case).largest(one))
+    return max(responses, key=lambda one: content_of(one.case).largest_displacement(one))
 
 
 def report(request: Payload, send: Send) -> None:

@@ -13,8 +13,8 @@ from ..reporting.texts import FOUND, Words
 from ..reporting.verdicts import (
     CONDITION_COLUMNS,
     Mechanism,
-    conditions,
-    counted,
+    condition_cells,
+    method_sentences,
     ranked,
     required_checks,
     sentence_of,
@@ -25,15 +25,14 @@ from .assessment_file import MENDABLE, add_file, assessment_of_file, named_check
 
 def table_of(mechanisms: Sequence[Mechanism], words: Words) -> str:
     """The conditions of all mechanisms, that with the least ratio first, and what governs."""
-    ranked_mechanisms = ranked(mechanisms)
+    ordered = ranked(mechanisms)
     rows = [[words(f"verdict_{head}") for head in CONDITION_COLUMNS]]
-    for mechanism in ranked_mechanisms:
+    for mechanism in ordered:
         for i, verdict in enumerate(mechanism.verdicts):
-            rows.append([mechanism.name * (i == 0), *conditions(verdict, words)])
-    sentence = sentence_of(ranked_mechanisms[0], "lead_governs" if ranked_mechanisms[1:] else "lead_alone", words)
-    return "\n".join(
-        [*ruled(rows, "<<<>>><<"), "", " ".join([sentence.start, sentence.end, *counted(ranked_mechanisms, words)])]
-    )
+            rows.append([mechanism.name * (i == 0), *condition_cells(verdict, words)])
+    sentence = sentence_of(ordered[0], "lead_governs" if ordered[1:] else "lead_alone", words)
+    sentences = [sentence.start, sentence.end, *method_sentences(ordered, words)]
+    return "\n".join([*ruled(rows, "<<<>>><<"), "", " ".join(sentences)])
 
 
 def steps_of(check: MechanismCheck, words: Words) -> list[str]:

@@ -14,7 +14,7 @@ from ..plotting.histories import history
 from ..plotting.style import save
 from ..reporting.inputs import record_name
 from ..reporting.texts import BY_HAND, DASH, Words
-from ..reporting.verdicts import REVERSED, dynamic_found, kind_of
+from ..reporting.verdicts import REVERSED, dynamic_results, kind_of
 from ..reporting.verdicts import Mechanism as Verdicts
 from ..study.analysis import Analysis
 from ..study.campaign.campaign import completed
@@ -68,7 +68,7 @@ def motion_name(run: Analysis, words: Words) -> str:
 
 def dynamic_of(name: str, check: DynamicCheck, words: Words) -> str:
     """What a check by dynamic runs found, its conditions, and the verdict."""
-    rows = [(words(f"dynamic_{key}"), value) for key, value in dynamic_found(check, words).items() if value != DASH]
+    rows = [(words(f"dynamic_{key}"), value) for key, value in dynamic_results(check, words).items() if value != DASH]
     mechanism = Verdicts(name or words(f"kind_{kind_of(check.case)}"), None, (check,))
     return "\n".join([*aligned(rows, "<"), "", conditions_of([mechanism], words)])
 

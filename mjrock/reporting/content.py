@@ -31,21 +31,21 @@ from ..result.ties import Plastic, overdrawn
 from ..study.intensity.fragility import Fragility
 from ..study.loading.dynamic_check import d_0_of, displaced
 from ..study.loading.limit_analysis import LimitCurve
-from ..study.loading.load_check import Borne
+from ..study.loading.load_check import StaticAnswer
 from ..study.loading.mechanism_curve import case_of
 from ..study.loading.push import Push
 from ..study.loading.pushover import PushoverCurve
-from .inputs import of_header
+from .inputs import header_inputs, value_range
 from .markup import Markup, element, table
-from .pictures import SMALL, WIDE, Run, by_variant, small, wall_drawn
+from .pictures import LEAST_TYPE, PICTURE_WIDTH, Run, by_variant, small, wall_drawing
 from .texts import DASH, FOUND, GIVEN, Words, effect_name
 from .verdicts import REVERSED, Subject
 
-TITLE = 48
+LONGEST_TITLE_LINE = 48
 """Longest line of a title of half a page [characters]."""
 TALLEST_BLOCKS, OVER_BLOCKS = 3.6, 0.6
 """Most height of a picture of blocks, and that of its title and its axis [inch]."""
-ENDS = 6
+MOST_ENDS = 6
 """Most responses whose blocks are drawn as they end."""
 STATS = {"accuracy": ("", GIVEN), "timestep": ("s", FOUND), "rtol": ("", GIVEN), "atol": ("", GIVEN), "steps": ("", 9)}
 """Statistics of runs that a report names, with their units and numbers of digits."""
@@ -67,76 +67,76 @@ class WallContent:
     KIND = "wall"
     COLUMNS = "outcome", "largest", "share", "impacts"
 
-    def largest(self, response: Response) -> float:
+    def largest_displacement(self, response: Response) -> float:
         """Largest displacement of the centroid in a response [m], as in the dynamic check, infinite if it fell."""
         wall = response.of_wall[0].wall
         return displaced(wall, response.peak_over_alpha * wall.alpha)
 
-    def moved(self, response: Response) -> Array:
+    def displacement(self, response: Response) -> Array:
         """Displacement of the centroid at the samples of a response [m], shape (n,)."""
         return np.asarray(response.pose[:, 0, 0])
 
-    def limit(self) -> float | None:
+    def limit_displacement(self) -> float | None:
         """The displacement from which nothing but ties brings it back [m]; None of a wall that they alone hold."""
         return d_0_of(self.case) or None
 
-    def result(self, response: Response, words: Words) -> list[str]:
+    def result_cells(self, response: Response, words: Words) -> list[str]:
         """Cells of the table of runs: how it ended, its largest displacement, that over the limit, impacts."""
-        largest = self.largest(response)
+        largest = self.largest_displacement(response)
         if math.isinf(largest):
             return [words("outcome_overturned"), DASH, DASH, str(len(response.impacts))]
-        limit = self.limit()
+        limit = self.limit_displacement()
         share = words.number(largest / limit, FOUND) if limit else DASH
         cells = words.quantity(largest, "m", FOUND), share, str(len(response.impacts))
         return [words(f"outcome_{response.outcome.name.lower()}"), *cells]
 
-    def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
+    def limitations(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not cover."""
         shaken = [run for run in runs if run.response.case.motion is not None]
-        records, both = {run.record for run in shaken}, {run.record for run in shaken if run.turned}
+        records, reversed_records = {run.record for run in shaken}, {run.record for run in shaken if run.is_reversed}
         applies = {
             "limit_rigid": True,
-            "limit_polarity": self.case.one_sided and records > both,
+            "limit_polarity": self.case.one_sided and records > reversed_records,
             "limit_one_record": len(records) == 1,
             "limit_release": bool(runs) and not shaken,
             "limit_theory": {run.response.solver for run in runs} == {"analytical"},
         }
-        found = [words(key) for key, holds in applies.items() if holds]
-        still = [run for run in runs if run.response.outcome is Outcome.TIME_ENDED]
-        if still:
-            found.append(words("limit_still_moves", count=len(still), of=len(runs)))
+        sentences = [words(key) for key, holds in applies.items() if holds]
+        moving_at_end = [run for run in runs if run.response.outcome is Outcome.TIME_ENDED]
+        if moving_at_end:
+            sentences.append(words("limit_still_moves", count=len(moving_at_end), of=len(runs)))
         for run in runs:
             for tie, drawn in run.response.plastic.items():
                 effect = run.response.case.links[tie]
                 if overdrawn(effect, drawn):
                     name, d = effect_name(tie, words), words.quantity(drawn.elongation, "m", FOUND)
                     share = words.share(round(100 * drawn.elongation / effect.span) / 100)
-                    found.append(words("limit_overdrawn", run=run.label, tie=name, d=d, share=share))
-        return found
+                    sentences.append(words("limit_overdrawn", run=run.label, tie=name, d=d, share=share))
+        return sentences
 
-    def by_hand(self, words: Words) -> list[tuple[str, ...]]:
+    def hand_check_rows(self, words: Words) -> list[tuple[str, ...]]:
         """Moments about the toe by which alpha_0 can be checked by hand: what they are, in kN m."""
         case, wall = self.case, self.case.wall
-        lever = wall.lever
+        lever_arm = wall.lever
         weight = wall.mass * GRAVITY
-        turning = weight * wall.centroid_height
-        holding = case.restoring.outer.P
+        overturning = weight * wall.centroid_height
+        stabilising = case.restoring.outer.P
         rows = [
             (words("hand_weight"), words.quantity(weight, "N", FOUND)),
-            (words("hand_lever"), words.quantity(lever, "m", FOUND)),
+            (words("hand_lever"), words.quantity(lever_arm, "m", FOUND)),
             (words("hand_height"), words.quantity(wall.centroid_height, "m", FOUND)),
-            (words("hand_holding"), words.quantity(weight * lever, "N m", FOUND)),
-            (words("hand_effects"), words.quantity(holding - weight * lever, "N m", FOUND)),
-            (words("hand_turning"), words.quantity(turning, "N m", FOUND)),
+            (words("hand_holding"), words.quantity(weight * lever_arm, "N m", FOUND)),
+            (words("hand_effects"), words.quantity(stabilising - weight * lever_arm, "N m", FOUND)),
+            (words("hand_turning"), words.quantity(overturning, "N m", FOUND)),
         ]
-        return [*rows, (words("hand_alpha"), words.number(holding / turning, FOUND))]
+        return [*rows, (words("hand_alpha"), words.number(stabilising / overturning, FOUND))]
 
-    def at_rest(self, words: Words, borne: Sequence[Borne]) -> tuple[Figure, str]:
+    def rest_drawing(self, words: Words, static_answers: Sequence[StaticAnswer]) -> tuple[Figure, str]:
         """Section and elevation."""
-        drawn = wall_drawn(self.case, words)
-        return drawn.figure, words("drawing_wall" if drawn.one_scale else "drawing_wall_scales")
+        drawing = wall_drawing(self.case, words)
+        return drawing.figure, words("drawing_wall" if drawing.one_scale else "drawing_wall_scales")
 
-    def at_end(self, runs: Sequence[Run], words: Words) -> None:
+    def end_drawing(self, runs: Sequence[Run], words: Words) -> None:
         """None: the histories show how the runs of a wall end."""
 
 
@@ -154,70 +154,73 @@ class MasonryContent:
     KIND = "masonry"
     COLUMNS = "outcome", "largest", "opening", "sliding", "fallen"
 
-    def largest(self, response: Response) -> float:
+    def largest_displacement(self, response: Response) -> float:
         """Largest displacement of a block in a response [m], infinite where one fell."""
-        return math.inf if response.fallen else float(self.moved(response).max())
+        return math.inf if response.fallen else float(self.displacement(response).max())
 
-    def moved(self, response: Response) -> Array:
+    def displacement(self, response: Response) -> Array:
         """Displacement of the farthest block at the samples of a response [m], shape (n,)."""
         return np.asarray(np.linalg.norm(response.pose[:, :, : 3 if response.in_space else 2], axis=2).max(axis=1))
 
-    def limit(self) -> None:
+    def limit_displacement(self) -> None:
         """None is known."""
 
-    def result(self, response: Response, words: Words) -> list[str]:
+    def result_cells(self, response: Response, words: Words) -> list[str]:
         """Cells of the table of runs: how it ended, largest motions, fallen blocks."""
-        largest = float(self.moved(response).max())
-        ended = "blocks_fell" if response.fallen else f"outcome_{response.outcome.name.lower()}"
-        moved = largest, response.opening.max(), response.sliding.max()
-        sizes = [words.quantity(value, "m", FOUND) for value in moved]
-        fell = [words("falls_at", block=block, t=words.quantity(t, "s", FOUND)) for block, t in response.fallen.items()]
-        return [words(ended), *sizes, words.named(fell) or DASH]
+        largest = float(self.displacement(response).max())
+        outcome = "blocks_fell" if response.fallen else f"outcome_{response.outcome.name.lower()}"
+        motions = largest, response.opening.max(), response.sliding.max()
+        sizes = [words.quantity(value, "m", FOUND) for value in motions]
+        times = {block: words.quantity(t, "s", FOUND) for block, t in response.fallen.items()}
+        falls = [words("falls_at", block=block, t=time) for block, time in times.items()]
+        return [words(outcome), *sizes, words.named(falls) or DASH]
 
-    def limits(self, runs: Sequence[Run], words: Words) -> list[str]:
+    def limitations(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not cover."""
-        found = [words("limit_rigid_blocks"), *([words("limit_margin")] if runs else [])]
+        sentences = [words("limit_rigid_blocks"), *([words("limit_margin")] if runs else [])]
         if len({run.record for run in runs if run.response.case.motion is not None}) == 1:
-            found.append(words("limit_one_record"))
+            sentences.append(words("limit_one_record"))
         if runs and "explicit" not in {run.response.solver for run in runs}:
-            found.append(words("limit_faces"))
-        return found
+            sentences.append(words("limit_faces"))
+        return sentences
 
-    def by_hand(self, words: Words) -> list[tuple[str, ...]]:
+    def hand_check_rows(self, words: Words) -> list[tuple[str, ...]]:
         """None."""
         return []
 
-    def at_rest(self, words: Words, borne: Sequence[Borne]) -> tuple[Figure, str]:
+    def rest_drawing(self, words: Words, static_answers: Sequence[StaticAnswer]) -> tuple[Figure, str]:
         """The blocks with their loads, and the loads that grow of what bears least."""
-        masonry, moved = self.case.masonry, []
+        masonry, mechanism_panels = self.case.masonry, []
         if self.curve is not None and self.curve.start.moving:
-            moved = [(self.curve.start, words("mechanism_opens"))]
-        figure = self._drawn([(masonry, words("at_rest") if moved else ""), *moved])
+            mechanism_panels = [(self.curve.start, words("mechanism_opens"))]
+        figure = self._figure_of([(masonry, words("at_rest") if mechanism_panels else ""), *mechanism_panels])
         if not masonry.in_space:
-            growing = [one.loads for one in borne if isinstance(one, Collapse) and one.masonry == masonry]
-            draw_loads(figure.axes[0], masonry, self.case.effects, *growing[:1])
-            sized(figure, len(figure.axes), TALLEST_BLOCKS)
-        return figure, words("drawing_masonry_mechanism" if moved else "drawing_masonry")
+            collapses = [answer for answer in static_answers if isinstance(answer, Collapse)]
+            growing_loads = [collapse.loads for collapse in collapses if collapse.masonry == masonry]
+            draw_loads(figure.axes[0], masonry, self.case.effects, *growing_loads[:1])
+            fit_to_panels(figure, len(figure.axes), TALLEST_BLOCKS)
+        return figure, words("drawing_masonry_mechanism" if mechanism_panels else "drawing_masonry")
 
-    def at_end(self, runs: Sequence[Run], words: Words) -> Figure:
+    def end_drawing(self, runs: Sequence[Run], words: Words) -> Figure:
         """The blocks as the runs with the largest motion end."""
-        worst = sorted(runs, key=lambda run: -run.largest)[:ENDS]
-        ends = [words.quantity(float(run.response.t[-1]), "s", FOUND) for run in worst]
-        titles = [words("at_time", run=_polar(run, words), t=t) for run, t in zip(worst, ends, strict=True)]
-        return self._drawn([(run.response, text) for run, text in zip(worst, titles, strict=True)])
+        panels = []
+        for run in sorted(runs, key=lambda run: -run.largest)[:MOST_ENDS]:
+            end = words.quantity(float(run.response.t[-1]), "s", FOUND)
+            panels.append((run.response, words("at_time", run=_signed_label(run, words), t=end)))
+        return self._figure_of(panels)
 
-    def _drawn(self, pieces: Sequence[tuple[Masonry | Response | Collapse, str]]) -> Figure:
+    def _figure_of(self, panels: Sequence[tuple[Masonry | Response | Collapse, str]]) -> Figure:
         """Masonry at rest, in its mechanism, or as responses of it end, in panels with titles."""
-        columns = min(2, len(pieces))
-        rows = -(-len(pieces) // columns)
-        figure = Figure(figsize=(WIDE, rows * TALLEST_BLOCKS), layout="constrained")
-        for i, (piece, title) in enumerate(pieces):
+        columns = min(2, len(panels))
+        rows = -(-len(panels) // columns)
+        figure = Figure(figsize=(PICTURE_WIDTH, rows * TALLEST_BLOCKS), layout="constrained")
+        for i, (shown, title) in enumerate(panels):
             ax = figure.add_subplot(rows, columns, i + 1, projection="3d" if self.case.in_space else None)
-            mechanism(ax, piece) if isinstance(piece, Collapse) else blocks(ax, piece)
-            ax.set_title(fill(title, TITLE), fontsize=SMALL)
+            mechanism(ax, shown) if isinstance(shown, Collapse) else blocks(ax, shown)
+            ax.set_title(fill(title, LONGEST_TITLE_LINE), fontsize=LEAST_TYPE)
             small(ax)
         if not self.case.in_space:
-            sized(figure, columns, TALLEST_BLOCKS if columns == 1 else 2.6)
+            fit_to_panels(figure, columns, TALLEST_BLOCKS if columns == 1 else 2.6)
         return figure
 
 
@@ -225,14 +228,14 @@ Content = WallContent | MasonryContent
 """What a report has of a wall or of masonry."""
 
 
-def sized(figure: Figure, columns: int, most: float) -> None:
+def fit_to_panels(figure: Figure, columns: int, most: float) -> None:
     """Make a figure of panels in the plane no higher than what is drawn in them, and a row up to a height [inch]."""
     sides = [np.ptp(ax.get_ylim()) / np.ptp(ax.get_xlim()) for ax in figure.axes]
     rows = -(-len(sides) // columns)
-    figure.set_size_inches(WIDE, rows * min(most, float(max(sides)) * WIDE / columns + OVER_BLOCKS))
+    figure.set_size_inches(PICTURE_WIDTH, rows * min(most, float(max(sides)) * PICTURE_WIDTH / columns + OVER_BLOCKS))
 
 
-def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
+def static_answer_rows(result: StaticAnswer, words: Words) -> list[tuple[str, str]]:
     """The numbers of a static answer, by the key of their names."""
 
     def length(d: float) -> str:
@@ -254,31 +257,32 @@ def of_borne(result: Borne, words: Words) -> list[tuple[str, str]]:
     return [("borne_start", start), ("centroid_end", length(result.d_0)), ("in_moving", moving)]
 
 
-def tied(response: Response, words: Words) -> list[str]:
+def tie_cells(response: Response, words: Words) -> list[str]:
     """What the ties of a response did: the largest force of one, how far the most drawn out was, the first break."""
-    ties, drawn = response.ties, response.plastic
+    ties, plastic = response.ties, response.plastic
     if not ties:
         return [DASH] * 3
     force = max(tie.largest_force for tie in ties.values())
-    out = max(drawn.get(name, Plastic(0.0, 0.0)).elongation for name in ties)
-    broke = min(tie.broken for tie in ties.values())
-    cells = [words.quantity(force, "N", FOUND), words.quantity(out, "m", FOUND)]
-    return [*cells, DASH if math.isinf(broke) else words.quantity(broke, "s", FOUND)]
+    elongation = max(plastic.get(name, Plastic(0.0, 0.0)).elongation for name in ties)
+    first_break = min(tie.broken for tie in ties.values())
+    cells = [words.quantity(force, "N", FOUND), words.quantity(elongation, "m", FOUND)]
+    return [*cells, DASH if math.isinf(first_break) else words.quantity(first_break, "s", FOUND)]
 
 
 def broken_ties(runs: Sequence[Run], words: Words) -> list[str]:
     """In how many runs ties broke, by variant."""
-    found = []
-    for variant, own in by_variant(runs).items():
-        broke = [min(tie.broken for tie in run.response.ties.values()) for run in own if run.response.ties]
-        count = sum(math.isfinite(t) for t in broke)
+    sentences = []
+    for variant, runs_of_variant in by_variant(runs).items():
+        ties_of_runs = [run.response.ties.values() for run in runs_of_variant if run.response.ties]
+        first_breaks = [min(tie.broken for tie in ties) for ties in ties_of_runs]
+        count = sum(math.isfinite(t) for t in first_breaks)
         if count:
-            name, first = variant or words("all_runs"), words.quantity(min(broke), "s", FOUND)
-            found.append(words("ties_broke", name=name, count=count, of=len(broke), t=first))
-    return found
+            label, earliest = variant or words("all_runs"), words.quantity(min(first_breaks), "s", FOUND)
+            sentences.append(words("ties_broke", name=label, count=count, of=len(first_breaks), t=earliest))
+    return sentences
 
 
-def forces_kept(runs: Sequence[Run], words: Words) -> list[tuple[str, ...]]:
+def kept_force_rows(runs: Sequence[Run], words: Words) -> list[tuple[str, ...]]:
     """The largest reaction and the largest normal force of a joint, of each run that has kept its forces."""
     rows = []
     for run in runs:
@@ -286,13 +290,13 @@ def forces_kept(runs: Sequence[Run], words: Words) -> list[tuple[str, ...]]:
             forces, normal = run.response.forces, run.response.forces.normal.max(axis=0)
             joint = int(normal.argmax())
             cells = [words.quantity(float(force), "N", FOUND) for force in (forces.largest_reaction, normal[joint])]
-            rows.append((_polar(run, words), *cells, forces.joints[joint]))
+            rows.append((_signed_label(run, words), *cells, forces.joints[joint]))
     return rows
 
 
-def _polar(run: Run, words: Words) -> str:
+def _signed_label(run: Run, words: Words) -> str:
     """The label of a run, and whether its record is reversed."""
-    return f"{run.label} ({words('reversed')})" if run.turned else run.label
+    return f"{run.label} ({words('reversed')})" if run.is_reversed else run.label
 
 
 def content_of(subject: Subject) -> Content:
@@ -302,68 +306,60 @@ def content_of(subject: Subject) -> Content:
     return MasonryContent(case, curve) if isinstance(case, MasonryCase) else WallContent(case)
 
 
-def of_motions(
-    grounds: Sequence[Mapping[str, GroundMotion]], called: Mapping[str, str], words: Words
+def motion_rows(
+    grounds: Sequence[Mapping[str, GroundMotion]], names: Mapping[str, str], words: Words
 ) -> list[tuple[str, ...]]:
     """The ground motions of runs, each once, in one polarity.
 
     Args:
         grounds: of each run by their directions.
-        called: what records are called in the report, by their names.
+        names: of the records in the report, by their own names.
         words: of the report.
     """
     rows: dict[tuple[str, str], tuple[str, ...]] = {}
     for ground in grounds:
         for direction, motion in ground.items():
             peak = float(abs(motion.accel).max())
-            sizes = words.quantity(peak, "m/s2", FOUND), words.quantity(peak / GRAVITY, "g", FOUND)
-            name = called[motion.name.removesuffix(REVERSED)]
+            peaks = words.quantity(peak, "m/s2", FOUND), words.quantity(peak / GRAVITY, "g", FOUND)
+            name = names[motion.name.removesuffix(REVERSED)]
             times = words.quantity(motion.duration, "s"), words.quantity(motion.dt, "s")
-            origin = "".join(row.value for row in of_header(motion, words)) or DASH
-            rows.setdefault((direction, name), (name, words(f"ground_{direction}"), *sizes, *times, origin))
+            origin = "".join(row.value for row in header_inputs(motion, words)) or DASH
+            rows.setdefault((direction, name), (name, words(f"ground_{direction}"), *peaks, *times, origin))
     return list(rows.values())
 
 
-def solved_with(responses: Sequence[Response], words: Words) -> list[str]:
+def solver_sentences(responses: Sequence[Response], words: Words) -> list[str]:
     """How the responses were solved, a sentence for each solver."""
-    found = []
+    sentences = []
     for solver in dict.fromkeys(response.solver for response in responses):
-        own = [response for response in responses if response.solver == solver]
-        given = [("duration", [response.case.duration for response in own], ("s", GIVEN))]
-        given += [
-            (name, [run.stats[name] for run in own if run.stats.get(name)], shown) for name, shown in STATS.items()
-        ]
-        parts = [
-            words(f"solved_{name}", value=_range(values, *shown, words)) for name, values, shown in given if values
-        ]
-        solved = words.or_else(f"solver_{solver}", solver)
-        found.append(words("solved", solver=solved, count=len(own), how=", ".join(parts)))
-    return found
+        of_solver = [response for response in responses if response.solver == solver]
+        durations = [response.case.duration for response in of_solver]
+        details = [words("solved_duration", value=value_range(durations, "s", words))]
+        for key, (unit, digits) in STATS.items():
+            if values := [response.stats[key] for response in of_solver if response.stats.get(key)]:
+                details.append(words(f"solved_{key}", value=value_range(values, unit, words, digits)))
+        solver_name = words.or_else(f"solver_{solver}", solver)
+        sentences.append(words("solved", solver=solver_name, count=len(of_solver), how=", ".join(details)))
+    return sentences
 
 
-def _range(values: Sequence[float], unit: str, digits: int, words: Words) -> str:
-    """The lowest and the highest of values."""
-    low, high = (words.quantity(value, unit, digits) for value in (min(values), max(values)))
-    return low if low == high else words("range", low=low, high=high)
-
-
-def of_fragility(fits: dict[str, Fragility], words: Words) -> Markup:
+def fragility_table(fits: dict[str, Fragility], words: Words) -> Markup:
     """Fragility curves as a table."""
     rows = []
     for name, fit in fits.items():
-        spans = (fit.median, *fit.median_interval(0.9)), (fit.dispersion, *fit.dispersion_interval(0.9))
-        numbers = [[words.number(value, FOUND) for value in span] for span in spans]
-        cells = [words("interval", value=value, low=low, high=high) for value, low, high in numbers]
+        intervals = (fit.median, *fit.median_interval(0.9)), (fit.dispersion, *fit.dispersion_interval(0.9))
+        texts = [[words.number(value, FOUND) for value in interval] for interval in intervals]
+        cells = [words("interval", value=value, low=low, high=high) for value, low, high in texts]
         groups = words("independent") if fit.groups is None else str(fit.groups)
         rows.append((name, *cells, str(fit.count), groups))
     heads = [words(f"fragility_{key}") for key in ("name", "median", "dispersion", "runs", "groups")]
     return element("div", table(heads, rows, right=(3, 4)), element("p", words("fragility_note")))
 
 
-def code_chapter(used: Sequence[str], words: Words) -> list[tuple[str, ...]]:
+def program_chapter(analyses: Sequence[str], words: Words) -> list[tuple[str, ...]]:
     """The chapter after NTC 2018, 10.2: each item of the clause and its answer, with the analyses used, the versions of
     the programs, and the random seeds."""
-    made = {
+    program_versions = {
         "mjrock": __version__,
         "MuJoCo": importlib.metadata.version("mujoco"),
         "NumPy": np.__version__,
@@ -373,5 +369,5 @@ def code_chapter(used: Sequence[str], words: Words) -> list[tuple[str, ...]]:
     }
     keys = "origin", "basis", "field", "validation", "results"
     rows = [(words(f"ntc_{key}"), words(f"ntc_{key}_text", version=__version__)) for key in keys]
-    versions = words("versions"), ", ".join(f"{name} {version}" for name, version in made.items())
-    return [(words("ntc_kind"), "; ".join(used)), *rows, versions, (words("seed"), words("seed_text"))]
+    versions = words("versions"), ", ".join(f"{name} {version}" for name, version in program_versions.items())
+    return [(words("ntc_kind"), "; ".join(analyses)), *rows, versions, (words("seed"), words("seed_text"))]

@@ -20,16 +20,16 @@ from .texts import MINUS, Words
 
 TOKEN = re.compile(r"\d+(?:[.,]\d+)?|[^\W\d_]+|\S")
 """A number, a name or a sign of a formula."""
-BRIEF = 12
+MOST_UNBROKEN_ROWS = 12
 """Most rows of a table that a page does not part."""
-MARGIN = 60
+LONGEST_MARGIN_TEXT = 60
 """Longest text in the margin of a page."""
 GREEK = {"alpha": "\u03b1"}
 """Letters that a formula spells."""
 TAGS = {"_": "msub", "^": "msup", "/": "mfrac"}
 """What a sign between two parts of a formula makes of them."""
 
-DOTS = 170
+DOTS_PER_INCH = 170
 """Dots of a picture in a page [1/inch]."""
 
 STYLE_SHEET = Path(__file__).with_name("page.css")
@@ -79,7 +79,7 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence
 
     head = [element("thead", line("th", columns))] if columns else []
     body = element("tbody", *(line("td", row) for row in rows))
-    kinds = " ".join(filter(None, (kind, "brief" * (len(rows) <= BRIEF))))
+    kinds = " ".join(filter(None, (kind, "brief" * (len(rows) <= MOST_UNBROKEN_ROWS))))
     whole = element("table", *head, body, **({"kind": kinds} if kinds else {}))
     return element("div", whole, kind="wide")
 
@@ -113,9 +113,9 @@ def _item(tokens: list[str]) -> Markup:
     return element("mn" if token[0].isdigit() else "mi" if token[0].isalpha() else "mo", GREEK.get(token, token))
 
 
-def picture(figure: Figure, caption: str, words: Words, *, own: bool = False) -> Markup:
+def picture(figure: Figure, caption: str, words: Words, *, of_user: bool = False) -> Markup:
     """A figure inside the page, see `image_of`."""
-    return framed(image_of(figure, words, own=own), caption)
+    return framed(image_of(figure, words, of_user=of_user), caption)
 
 
 def framed(image: str, caption: str) -> Markup:
@@ -124,20 +124,20 @@ def framed(image: str, caption: str) -> Markup:
     return element("figure", shown, element("figcaption", caption))
 
 
-def image_of(figure: Figure, words: Words, *, own: bool = False) -> str:
+def image_of(figure: Figure, words: Words, *, of_user: bool = False) -> str:
     """A figure as PNG in base 64, its texts in the language of the report with its decimal mark.
 
-    One of the user, `own`, keeps its decimal points and is left as it was.
+    One of the user keeps its decimal points and is left as it was.
     """
     texts = figure.findobj(Text)
     was = [text.get_text() for text in texts]
     for text, content in zip(texts, was, strict=True):
         text.set_text(words.drawn(content))
-    if words.mark != "." and not own:
+    if words.mark != "." and not of_user:
         _marked(figure, words)
     file = BytesIO()
-    figure.savefig(file, format="png", dpi=DOTS, metadata={"Software": None})
-    if own:
+    figure.savefig(file, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
+    if of_user:
         for text, content in zip(texts, was, strict=True):
             text.set_text(content)
     return base64.b64encode(file.getvalue()).decode("ascii")
@@ -190,7 +190,7 @@ def page(words: Words, title: str, project: str, version: str, parts: Sequence[M
 
 def _in_style(text: str) -> str:
     """Text within the quotes of a style sheet, in which nothing ends it."""
-    short = textwrap.shorten(text, MARGIN, placeholder=" ...")
+    short = textwrap.shorten(text, LONGEST_MARGIN_TEXT, placeholder=" ...")
     return "".join(c if c.isalnum() or c == " " else f"\\{ord(c):x} " for c in short)
 
 

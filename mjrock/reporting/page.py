@@ -27,18 +27,18 @@ from ..study.intensity.fragility import Fragility
 from ..study.loading.code import code_of
 from ..study.loading.design import Design
 from ..study.loading.dynamic_check import signals_of
-from ..study.loading.load_check import Borne
+from ..study.loading.load_check import StaticAnswer
 from ..study.loading.mechanism_curve import case_of
-from . import content, inputs, verdicts
+from . import content, inputs, pictures, verdicts
 from .content import Content, content_of
 from .drawings import OTHERS
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .parts import Part, drawings_of, is_of, parts_of
-from .pictures import PANELS, Run, borne_drawn, by_variant, capacity_curves, design_drawn, histories, strips
+from .pictures import Run, by_variant
 from .texts import DASH, FOUND, MINUS, Words, grouped
 from .verdicts import REVERSED, Check, Mechanism, Subject, required_checks
 
-HEADS = ("project", "client", "author", "date", "place")
+TITLE_BLOCK_KEYS = ("project", "client", "author", "date", "place")
 """What the title block has a place for."""
 Responses = Response | Sequence[Response] | Mapping[str, Response | Sequence[Response]]
 
@@ -63,8 +63,8 @@ def report(
 
     The first page answers: a title block, the question, what holds and what fails with demand, capacity and ratio, and
     a drawing with hinge and effects. Then come the checks step by step with their formulae, the dynamic runs, what
-    governs, what the results do not say, and what NTC 2018, 10.2, asks of a calculation by program. At the end stand
-    the inputs with their units and what they rest on, every run, and the versions of the programs.
+    governs, what the results do not cover, and what NTC 2018, 10.2, requires of a calculation by program. At the end
+    stand the inputs with their units and what they rest on, every run, and the versions of the programs.
 
     Args:
         case: the wall or masonry and its effects, for the drawing and the inputs; or the corner or the wall that bends
@@ -105,43 +105,43 @@ def report(
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .html or .pdf")
     words = Words(language)
     require_text("notes", notes, 100_000)
-    own = words(f"kind_{verdicts.kind_of(case)}")
-    mechanisms = required_checks(checks, own)
+    case_name = words(f"kind_{verdicts.kind_of(case)}")
+    mechanisms = required_checks(checks, case_name)
     runs = required_runs(Request(case, responses, labels, mechanisms, not (checks or sections)), words)
-    parts = parts_of(own, case, mechanisms, runs)
+    parts = parts_of(case_name, case, mechanisms, runs)
     kind = "several" if parts[1:] else verdicts.kind_of(parts[0].subjects[0].subject)
-    head = words(f"title_{kind}") if title is None else require_text("title", title)
-    subjects = inputs.subjects(own, case, mechanisms, runs)
-    given = {
-        words("seismic_action"): inputs.of_demands(mechanisms, words),
-        words("what_stands"): inputs.of_subjects(subjects, own, words),
-        words("contacts"): of_impacts(case, e, contacts, runs, words),
+    heading = words(f"title_{kind}") if title is None else require_text("title", title)
+    named_subjects = inputs.named_subjects(case_name, case, mechanisms, runs)
+    subjects = [subject for _, subject in named_subjects]
+    input_groups = {
+        words("seismic_action"): inputs.demand_groups(mechanisms, words),
+        words("what_stands"): inputs.subject_groups(named_subjects, case_name, words),
+        words("contacts"): contact_groups(case, e, contacts, runs, words),
     }
-    rests = required_texts("basis", basis, [row.key for some in given.values() for one in some for row in one.rows])
+    input_keys = [row.key for groups in input_groups.values() for group in groups for row in group.rows]
+    bases = required_texts("basis", basis, input_keys)
     drawings = [drawings_of(part, parts, words) for part in parts]
-    lists = lists_of([one for _, one in subjects], path, words)
-    block = required_texts("project", project, HEADS)
+    tables = input_tables(subjects, path, words)
+    project_texts = required_texts("project", project, TITLE_BLOCK_KEYS)
     pieces = [
-        element("h1", head),
-        title_block(block, words),
+        element("h1", heading),
+        title_block(project_texts, words),
         *([element("p", element("b", words("question")), " ", notes)] if notes else []),
         *answer_section(parts, drawings, runs, mechanisms, words),
         *checks_section(parts, drawings, mechanisms, words),
         *runs_section(parts, words),
-        *[piece for name, some in required_sections(sections).items() for piece in section(name, some, words)],
-        *judgement_section(parts, runs, mechanisms, words, inputs.loads_in([one for _, one in subjects], words)),
-        *appendix(given, rests, words),
-        *(piece for one in lists for piece in input_table_parts(one, words)),
-        *every_run(parts, words),
+        *[piece for key, items in required_sections(sections).items() for piece in further_section(key, items, words)],
+        *judgement_section(parts, runs, mechanisms, words, inputs.massless_load_names(subjects, words)),
+        *inputs_section(input_groups, bases, words),
+        *(piece for input_table in tables for piece in input_table_parts(input_table, words)),
+        *run_tables(parts, words),
     ]
-    text = page(words, head, block.get("project", ""), f"mjrock {__version__}", pieces)
-    if path.suffix.lower() == ".pdf":
-        write_pdf(path, text)
-    else:
-        write_text(path, text)
-    for one in lists:
-        if one.file is not None:
-            write_text(one.file, csv_text(one.listing.columns, one.listing.rows))
+    text = page(words, heading, project_texts.get("project", ""), f"mjrock {__version__}", pieces)
+    write = write_pdf if path.suffix.lower() == ".pdf" else write_text
+    write(path, text)
+    for input_table in tables:
+        if input_table.file is not None:
+            write_text(input_table.file, csv_text(input_table.listing.columns, input_table.listing.rows))
     return path
 
 
@@ -152,14 +152,14 @@ class Request(NamedTuple):
         case: the wall or masonry.
         responses, labels: as they are given.
         mechanisms: that are checked.
-        bare: whether neither checks nor sections are given, so that responses have to be.
+        needs_responses: whether neither checks nor sections are given.
     """
 
     case: Subject
     responses: object
     labels: object = None
     mechanisms: Sequence[Mechanism] = ()
-    bare: bool = False
+    needs_responses: bool = False
 
 
 def required_runs(request: Request, words: Words) -> list[Run]:
@@ -171,57 +171,56 @@ def required_runs(request: Request, words: Words) -> list[Run]:
     responses, labels = request.responses, request.labels
     if isinstance(responses, Mapping) and labels is not None:
         raise ValueError("labels are for a sequence of responses, and the names of a mapping are those of variants")
-    given: list[tuple[str, Response]] = []
-    for variant, of in (responses if isinstance(responses, Mapping) else {"": responses}).items():
+    variants, all_responses = list[str](), list[Response]()
+    for variant, answer in (responses if isinstance(responses, Mapping) else {"": responses}).items():
         require_text("a name of responses", variant)
         name = f"responses[{variant!r}]" if variant else "responses"
-        several = [of] if isinstance(of, Response) else of
-        if not isinstance(several, Sequence) or isinstance(several, str):
-            raise TypeError(f"{name} = {shown(of)} is neither a Response nor a sequence of them")
-        for i, response in enumerate(several):
+        of_variant = [answer] if isinstance(answer, Response) else answer
+        if not isinstance(of_variant, Sequence) or isinstance(of_variant, str):
+            raise TypeError(f"{name} = {shown(answer)} is neither a Response nor a sequence of them")
+        for i, response in enumerate(of_variant):
             require_kind(f"{name}[{i}]", response, Response)
-            require_same(f"{name}[{i}]", response, request)
-        given += [(variant, response) for response in several]
-    if not given and request.bare:
+            require_known_subject(f"{name}[{i}]", response, request)
+        variants += [variant] * len(of_variant)
+        all_responses += of_variant
+    if not all_responses and request.needs_responses:
         raise ValueError("responses is empty; give at least one response, or checks, or sections")
-    answers = [response for _, response in given]
-    motions = [DASH if (motion := response.case.motion) is None else motion.name for response in answers]
-    records = named_records([response.case.motion for response in answers], words)
-    by_record = DASH not in records and len({response.solver for response in answers}) == 1
-    alone = isinstance(responses, Mapping) or (labels is None and by_record and len(answers) > 1)
-    names = records if alone else required_labels(answers, labels)
-    if names is None or not (labels or alone):
-        own = names or [response.solver for response in answers]
-        names = [in_words(name, response.solver, words) for name, response in zip(own, answers, strict=True)]
-    signals = signals_of([response.case for response in answers])
-    largest = [content_of(response.case).largest(response) for response in answers]
-    turned = [motion.endswith(REVERSED) for motion in motions]
+    solvers = [response.solver for response in all_responses]
+    records = record_names([response.case.motion for response in all_responses], words)
+    differ_by_record = DASH not in records and len(set(solvers)) == 1
+    named_by_record = isinstance(responses, Mapping) or (labels is None and differ_by_record and len(records) > 1)
+    names = records if named_by_record else required_labels(all_responses, labels)
+    if names is None or not (labels or named_by_record):
+        names = [label_in_words(name, solver, words) for name, solver in zip(names or solvers, solvers, strict=True)]
+    signals = signals_of([response.case for response in all_responses])
+    largest = [content_of(response.case).largest_displacement(response) for response in all_responses]
     return [
-        Run(response, variant, names[i], signals[i][0], records[i], turned[i], largest[i])
-        for i, (variant, response) in enumerate(given)
+        Run(response, variants[i], names[i], signals[i][0], records[i], largest[i])
+        for i, response in enumerate(all_responses)
     ]
 
 
-def named_records(motions: Sequence[GroundMotion | None], words: Words) -> list[str]:
+def record_names(motions: Sequence[GroundMotion | None], words: Words) -> list[str]:
     """What records are called: in words where no two are alike then, otherwise as they are."""
-    own = [DASH if motion is None else motion.name.removesuffix(REVERSED) for motion in motions]
-    called = {name: inputs.record_name(motion, words) for name, motion in zip(own, motions, strict=True) if motion}
-    return own if len(set(called.values())) < len(called) else [called.get(name, name) for name in own]
+    names = [DASH if motion is None else motion.name.removesuffix(REVERSED) for motion in motions]
+    in_words = {name: inputs.record_name(motion, words) for name, motion in zip(names, motions, strict=True) if motion}
+    return names if len(set(in_words.values())) < len(in_words) else [in_words.get(name, name) for name in names]
 
 
-def in_words(name: str, solver: str, words: Words) -> str:
+def label_in_words(name: str, solver: str, words: Words) -> str:
     """A name that a response has by its solver, in words."""
-    known = words.or_else(f"short_{solver}", solver)
-    return known + name.removeprefix(solver).replace(REVERSED, f", {words('reversed')}")
+    solver_name = words.or_else(f"short_{solver}", solver)
+    return solver_name + name.removeprefix(solver).replace(REVERSED, f", {words('reversed')}")
 
 
-def require_same(name: str, response: Response, request: Request) -> None:
-    """Raise a ValueError for a response of another wall or of other masonry than the case and what is checked."""
-    subjects = [request.case, *(one for mechanism in request.mechanisms for one in mechanism.subjects)]
-    if not any(is_of(response.case, subject) for subject in subjects):
-        own, due = response.case.description, case_of(request.case).description
-        other = "other " if own == due else ""
-        raise ValueError(f"{name} is of {own}, and the case of {other}{due}")
+def require_known_subject(name: str, response: Response, request: Request) -> None:
+    """Raise a ValueError for a response of another wall or other masonry than the case and all checked mechanisms."""
+    checked = [subject for mechanism in request.mechanisms for subject in mechanism.subjects]
+    if not any(is_of(response.case, subject) for subject in (request.case, *checked)):
+        known = list(dict.fromkeys(case_of(subject).description for subject in (request.case, *checked)))
+        other = "other " if response.case.description in known else ""
+        owners = "the case and the checked mechanisms" if checked else "the case"
+        raise ValueError(f"{name} is of {response.case.description}, and {owners} of {other}{', '.join(known)}")
 
 
 def required_texts(name: str, given: object, known: Sequence[str]) -> dict[str, str]:
@@ -248,12 +247,12 @@ def required_sections(sections: object) -> dict[str, object]:
     """
     if not isinstance(sections, Mapping | None):
         raise TypeError(f"sections = {shown(sections)} is not a mapping of headings to texts, figures and results")
-    return {require_text("a heading of sections", name): pieces for name, pieces in (sections or {}).items()}
+    return {require_text("a heading of sections", heading): items for heading, items in (sections or {}).items()}
 
 
-def title_block(block: Mapping[str, str], words: Words) -> Markup:
+def title_block(project: Mapping[str, str], words: Words) -> Markup:
     """Project, client, author, date and place, with room to write where one is not given."""
-    cells = [cell for name in HEADS for cell in (words(f"head_{name}"), block.get(name, ""))]
+    cells = [cell for key in TITLE_BLOCK_KEYS for cell in (words(f"head_{key}"), project.get(key, ""))]
     return table((), [cells[i : i + 4] for i in range(0, len(cells), 4)], kind="block")
 
 
@@ -265,185 +264,190 @@ def answer_section(
     words: Words,
 ) -> list[Markup]:
     """The answer, and the first drawing of a report of one wall; several walls are drawn with their checks."""
-    others = [one.subject for part in parts for one in part.subjects]
-    found = verdicts.answers(mechanisms, others, words) if mechanisms else []
+    others = [named.subject for part in parts for named in part.subjects]
+    answers = verdicts.answer_parts(mechanisms, others, words) if mechanisms else []
     codes = verdicts.codes_of(mechanisms, words.language)
-    borne = any(mechanism.loads for mechanism in mechanisms)
-    methods = verdicts.sentences(codes, "methods", words) if codes or borne else [words("no_check")]
-    methods += [words("borne")] * borne
-    texts = [*methods, *([outcomes(runs, words)] if runs else [])]
+    has_loads = any(mechanism.loads for mechanism in mechanisms)
+    texts = verdicts.code_sentences(codes, "methods", words) if codes or has_loads else [words("no_check")]
+    texts += [words("borne")] * has_loads + ([outcome_sentence(runs, words)] if runs else [])
     drawing = drawings[0][:1] if len(parts) == 1 else []
-    return [element("h2", words("answer")), *found[:-1], *drawing, *found[-1:], *(element("p", one) for one in texts)]
+    sentences = [element("p", text) for text in texts]
+    return [element("h2", words("answer")), *answers[:-1], *drawing, *answers[-1:], *sentences]
 
 
-def outcomes(runs: Sequence[Run], words: Words) -> str:
+def outcome_sentence(runs: Sequence[Run], words: Words) -> str:
     """How many runs of each variant overturn."""
     counts = []
-    for variant, own in by_variant(runs).items():
-        count = sum(run.largest == math.inf for run in own)
-        counts.append(words("runs_overturn", name=variant or words("all_runs"), count=count, of=len(own)))
+    for variant, runs_of_variant in by_variant(runs).items():
+        count = sum(run.largest == math.inf for run in runs_of_variant)
+        counts.append(words("runs_overturn", name=variant or words("all_runs"), count=count, of=len(runs_of_variant)))
     return f"{words('falls')} {'; '.join(counts)}."
 
 
 def checks_section(
-    wholes: Sequence[Part], drawings: Sequence[Sequence[Markup]], mechanisms: Sequence[Mechanism], words: Words
+    parts: Sequence[Part], drawings: Sequence[Sequence[Markup]], mechanisms: Sequence[Mechanism], words: Words
 ) -> list[Markup]:
     """The checks, of each wall with its drawings, its curves and its steps."""
-    parts: list[Markup] = []
-    several, kinematic = len(wholes) > 1, any(one.kinematic for one in mechanisms)
-    drawings = [some[not several :] for some in drawings]
+    pieces: list[Markup] = []
+    several, kinematic = len(parts) > 1, any(mechanism.kinematic for mechanism in mechanisms)
+    drawings = [drawings_of_part[not several :] for drawings_of_part in drawings]
     if any(drawings) or kinematic:
-        codes = verdicts.codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
-        parts += [element("h2", words("checks" if kinematic else "drawings"))]
-        parts += [element("p", text) for text in verdicts.sentences(codes, "kinematic", words)]
-    for one, drawing in zip(wholes, drawings, strict=True):
-        parts += [*[element("h3", one.names)] * several, *drawing, *curves_and_steps(one.mechanisms, words)]
-    if loaded := [(one.name, check.result) for one in mechanisms for check in one.loads]:
-        parts.append(element("h2", words("loaded")))
-        parts += [part for name, result in loaded for part in of_borne(name, result, words)]
+        codes = verdicts.codes_of([mechanism._replace(dynamic=()) for mechanism in mechanisms], words.language)
+        pieces += [element("h2", words("checks" if kinematic else "drawings"))]
+        pieces += [element("p", text) for text in verdicts.code_sentences(codes, "kinematic", words)]
+    for part, drawing in zip(parts, drawings, strict=True):
+        pieces += [*[element("h3", part.names)] * several, *drawing, *curves_and_steps(part.mechanisms, words)]
+    if loaded := [(mechanism.name, check.result) for mechanism in mechanisms for check in mechanism.loads]:
+        pieces.append(element("h2", words("loaded")))
+        pieces += [piece for name, result in loaded for piece in static_answer_parts(name, result, words)]
     if dynamic := verdicts.dynamic_steps(mechanisms, words):
-        codes = verdicts.codes_of([one._replace(kinematic=None) for one in mechanisms], words.language)
-        texts = verdicts.sentences(codes, "dynamic", words)
-        parts += [element("h2", words("dynamic")), *(element("p", one) for one in texts), *dynamic]
-    return parts
+        codes = verdicts.codes_of([mechanism._replace(kinematic=None) for mechanism in mechanisms], words.language)
+        texts = verdicts.code_sentences(codes, "dynamic", words)
+        pieces += [element("h2", words("dynamic")), *(element("p", text) for text in texts), *dynamic]
+    return pieces
 
 
 def curves_and_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The curves of kinematic checks, and their steps; nothing where there are none."""
-    figure = capacity_curves(mechanisms, words)
+    figure = pictures.capacity_curves(mechanisms, words)
     if figure is None:
         return []
-    cut = [(one.name, one.kinematic.d_0) for one in mechanisms if one.kinematic and one.kinematic.ended]
-    notes = [element("p", words("curve_cut", name=name, d=words.quantity(d, "m", FOUND))) for name, d in cut]
+    checks = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
+    ends = [(name, words.quantity(check.d_0, "m", FOUND)) for name, check in checks if check.ended]
+    notes = [element("p", words("curve_cut", name=name, d=end)) for name, end in ends]
     return [picture(figure, words("curves_caption"), words), *notes, *verdicts.kinematic_steps(mechanisms, words)]
 
 
 def runs_section(parts: Sequence[Part], words: Words) -> list[Markup]:
     """The runs as pictures, those of each wall for themselves; nothing without runs."""
-    moved = [part for part in parts if part.runs]
-    found = [element("h2", words("runs"))] if moved else []
-    for part in moved:
-        found += [*[element("h3", part.names_run)] * (len(moved) > 1), *pictures_of_runs(part, words)]
-    return found
+    parts_with_runs = [part for part in parts if part.runs]
+    pieces = [element("h2", words("runs"))] if parts_with_runs else []
+    for part in parts_with_runs:
+        pieces += [*[element("h3", part.run_names)] * (len(parts_with_runs) > 1), *pictures_of_runs(part, words)]
+    return pieces
 
 
 def pictures_of_runs(part: Part, words: Words) -> list[Markup]:
     """The runs of a wall or masonry as pictures."""
-    whole, runs, mechanisms = part.whole, part.runs, part.mechanisms
-    limits, limit = {}, whole.limit()
+    drawn_content, runs, mechanisms = part.content, part.runs, part.mechanisms
+    limits, limit = {}, drawn_content.limit_displacement()
     if limit is not None:
         limits[words("limit_d_0")] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
-    solved = content.solved_with([run.response for run in runs], words)
-    found = [element("p", text) for text in solved]
-    drawings = strips(runs, list(limits.items()), words(f"beyond_{whole.KIND}"), words)
-    found += [picture(drawing, words(f"strip_{whole.KIND}"), words) for drawing in drawings]
-    drawings = histories(runs, [whole.moved(run.response) for run in runs], limit, words)
+    sentences = content.solver_sentences([run.response for run in runs], words)
+    pieces = [element("p", text) for text in sentences]
+    figures = pictures.strips(runs, list(limits.items()), words(f"beyond_{drawn_content.KIND}"), words)
+    pieces += [picture(figure, words(f"strip_{drawn_content.KIND}"), words) for figure in figures]
+    figures = pictures.histories(runs, [drawn_content.displacement(run.response) for run in runs], limit, words)
     count = len({run.record for run in runs})
-    caption = words("histories_caption", count=min(count, PANELS), of=count)
-    found += [picture(drawing, caption, words) for drawing in drawings]
-    end = whole.at_end(runs, words)
-    return found if end is None else [*found, picture(end, words("ends_caption"), words)]
+    caption = words("histories_caption", count=min(count, pictures.MOST_PANELS), of=count)
+    pieces += [picture(figure, caption, words) for figure in figures]
+    end_figure = drawn_content.end_drawing(runs, words)
+    return pieces if end_figure is None else [*pieces, picture(end_figure, words("ends_caption"), words)]
 
 
 def judgement_section(
-    wholes: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words, loads: Sequence[str]
+    parts: Sequence[Part], runs: Sequence[Run], mechanisms: Sequence[Mechanism], words: Words, loads: Sequence[str]
 ) -> list[Markup]:
     """What governs, the limits of the results and of the loads, and the chapter of the code on programs."""
-    parts = []
+    pieces = []
     if mechanisms:
         motions = [(run.response.case.motion, run.motion) for run in runs]
-        records = {motion.name.removesuffix(REVERSED): called for motion, called in motions if motion is not None}
-        parts += [element("h2", words("governing")), verdicts.governing(verdicts.ranked(mechanisms), records, words)]
-    if broken := content.broken_ties(runs, words):
-        parts.append(listed(broken))
-    limits = [*verdicts.limits(mechanisms, words)]
-    limits += dict.fromkeys(text for part in wholes for text in part.whole.limits(part.runs, words))
+        records = {motion.name.removesuffix(REVERSED): name for motion, name in motions if motion is not None}
+        governing = verdicts.governing_table(verdicts.ranked(mechanisms), records, words)
+        pieces += [element("h2", words("governing")), governing]
+    if tie_sentences := content.broken_ties(runs, words):
+        pieces.append(listed(tie_sentences))
+    limits = [*verdicts.kinematic_limits(mechanisms, words)]
+    limits += dict.fromkeys(text for part in parts for text in part.content.limitations(part.runs, words))
     limits += [words("limit_load", names=words.named(loads))] if loads else []
-    parts += [element("h2", words("limits")), listed(limits)]
+    pieces += [element("h2", words("limits")), listed(limits)]
     solvers = list(dict.fromkeys(run.response.solver for run in runs))
-    used = [words("kinematic_analysis")] * any(mechanism.kinematic for mechanism in mechanisms)
-    used += dict.fromkeys(words(one.what) for each in mechanisms for check in each.loads for one in check.verdicts)
-    used += [words.or_else(f"solver_{solver}", solver) for solver in solvers]
+    analyses = [words("kinematic_analysis")] * any(mechanism.kinematic for mechanism in mechanisms)
+    load_checks = [check for mechanism in mechanisms for check in mechanism.loads]
+    analyses += dict.fromkeys(words(verdict.what) for check in load_checks for verdict in check.verdicts)
+    analyses += [words.or_else(f"solver_{solver}", solver) for solver in solvers]
     codes = verdicts.codes_of(mechanisms, words.language) or [code_of()]
-    heading = "; ".join(verdicts.sentences(codes, "program", words)) or words("program")
-    parts += [element("h2", heading), table((), content.code_chapter(used, words), kind="block")]
-    parts += by_hand(wholes, words)
-    judgement = element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))
-    return [*parts, element("div", *judgement, kind="whole")]
+    heading = "; ".join(verdicts.code_sentences(codes, "program", words)) or words("program")
+    pieces += [element("h2", heading), table((), content.program_chapter(analyses, words), kind="block")]
+    pieces += hand_check_tables(parts, words)
+    signature = element("p", words("ntc_judgement")), element("div", kind="sign"), element("p", words("sign"))
+    return [*pieces, element("div", *signature, kind="whole")]
 
 
-def by_hand(parts: Sequence[Part], words: Words) -> list[Markup]:
+def hand_check_tables(parts: Sequence[Part], words: Words) -> list[Markup]:
     """Checks by hand of walls that overturn, a column each."""
-    walls = [one for part in parts for one in part.subjects if verdicts.kind_of(one.subject) == "wall"]
-    found = grouped((name, content_of(wall).by_hand(words)) for names, wall in walls for name in names)
-    made = []
-    for start in range(0, len(found), verdicts.ABREAST):
-        some = found[start : start + verdicts.ABREAST]
-        rows = [(one[0][0], *(value for _, value in one)) for one in zip(*(rows for _, rows in some), strict=True)]
-        heads = ("", *("; ".join(names) for names, _ in some)) if found[1:] else ()
-        made.append(table(heads, rows, right=range(1, 1 + len(some))))
-    return [element("p", words("hand"), kind="head"), *made] if made else []
+    walls = [named for part in parts for named in part.subjects if verdicts.kind_of(named.subject) == "wall"]
+    checks = grouped((name, content_of(wall).hand_check_rows(words)) for names, wall in walls for name in names)
+    tables = []
+    for start in range(0, len(checks), verdicts.COLUMNS_ABREAST):
+        columns = checks[start : start + verdicts.COLUMNS_ABREAST]
+        labels = [label for label, _ in columns[0][1]]
+        values = [[value for _, value in rows] for _, rows in columns]
+        heads = ("", *("; ".join(names) for names, _ in columns)) if checks[1:] else ()
+        tables.append(table(heads, list(zip(labels, *values, strict=True)), right=range(1, 1 + len(columns))))
+    return [element("p", words("hand"), kind="head"), *tables] if tables else []
 
 
-def of_borne(name: str, result: Borne, words: Words) -> list[Markup]:
+def static_answer_parts(name: str, result: StaticAnswer, words: Words) -> list[Markup]:
     """What a static answer bears: its picture and its numbers."""
-    figure = borne_drawn(result, words)
-    rows = [(words(key), value) for key, value in content.of_borne(result, words)]
+    figure = pictures.static_answer_figure(result, words)
+    rows = [(words(key), value) for key, value in content.static_answer_rows(result, words)]
     return [*([] if figure is None else [picture(figure, name, words)]), table((), rows)]
 
 
-def section(name: str, pieces: object, words: Words) -> list[Markup]:
-    """A section: texts, figures and the tables of results.
+def further_section(heading: str, items: object, words: Words) -> list[Markup]:
+    """A section of the user: texts, figures and the tables of results.
 
     Raises:
         TypeError: for anything else.
     """
-    parts = [element("h2", name)]
-    for piece in pieces if isinstance(pieces, list | tuple) else [pieces]:
-        if isinstance(piece, Figure):
-            parts.append(picture(piece, name, words, own=True))
-        elif isinstance(piece, str):
-            parts.append(element("p", piece))
-        elif isinstance(piece, Design):
-            parts.append(picture(design_drawn(piece, words), words("design_caption"), words))
-            parts += verdicts.design_results(piece, words)
-        elif isinstance(piece, Borne):
-            parts += of_borne(name, piece, words)
-        elif isinstance(piece, Fragility):
-            parts.append(content.of_fragility({"": piece}, words))
-        elif isinstance(piece, Mapping) and piece and all(isinstance(one, Fragility) for one in piece.values()):
-            parts.append(content.of_fragility(dict(piece), words))
-        elif callable(made := getattr(piece, "table", None)):
-            parts += tables(made())
+    pieces = [element("h2", heading)]
+    for item in items if isinstance(items, list | tuple) else [items]:
+        if isinstance(item, Figure):
+            pieces.append(picture(item, heading, words, of_user=True))
+        elif isinstance(item, str):
+            pieces.append(element("p", item))
+        elif isinstance(item, Design):
+            pieces.append(picture(pictures.design_figure(item, words), words("design_caption"), words))
+            pieces += verdicts.design_results(item, words)
+        elif isinstance(item, StaticAnswer):
+            pieces += static_answer_parts(heading, item, words)
+        elif isinstance(item, Fragility):
+            pieces.append(content.fragility_table({"": item}, words))
+        elif isinstance(item, Mapping) and item and all(isinstance(fit, Fragility) for fit in item.values()):
+            pieces.append(content.fragility_table(dict(item), words))
+        elif callable(table_text := getattr(item, "table", None)):
+            pieces += result_tables(table_text())
         else:
-            raise TypeError(f"sections[{name!r}] = {shown(piece)} is not a text, a figure or a result with a table")
-    return parts
+            raise TypeError(f"sections[{heading!r}] = {shown(item)} is not a text, a figure or a result with a table")
+    return pieces
 
 
-def tables(text: str) -> list[Markup]:
+def result_tables(text: str) -> list[Markup]:
     """The table of a result, whose cells stand two spaces apart, and the sentences above and below it."""
     if "|" in text:  # a head of two levels
         return [element("div", element("pre", text), kind="wide")]
     lines = [re.split(r"\s{2,}", line.strip()) for line in text.splitlines()]
-    parts = []
-    for several, some in groupby(lines, lambda cells: len(cells) > 1):
-        rows = list(some)
-        wide = max(map(len, rows))
-        rows = [row + [""] * (wide - len(row)) for row in rows]
-        head = several and not re.search(r"\d", " ".join(rows[0]))
-        parts += [table(rows[0] if head else (), rows[head:])] if several else [element("p", row[0]) for row in rows]
-    return parts
+    pieces = []
+    for in_columns, grouped_lines in groupby(lines, lambda cells: len(cells) > 1):
+        rows = list(grouped_lines)
+        width = max(map(len, rows))
+        rows = [row + [""] * (width - len(row)) for row in rows]
+        has_head = not re.search(r"\d", " ".join(rows[0]))
+        head = rows[0] if has_head else ()
+        pieces += [table(head, rows[has_head:])] if in_columns else [element("p", row[0]) for row in rows]
+    return pieces
 
 
-def of_impacts(
+def contact_groups(
     case: Subject,
     e: Restitution | Mapping[str, Restitution] | None,
     contacts: Contacts | Mapping[str, Contacts] | None,
     runs: Sequence[Run],
     words: Words,
-) -> list[inputs.Section]:
+) -> list[inputs.InputGroup]:
     """Restitution and contacts, of all responses or of each variant.
 
     Raises:
@@ -452,12 +456,12 @@ def of_impacts(
     cases = {run.variant: run.response.case for run in runs}
     e_of = dict(e) if isinstance(e, Mapping) else {"": e}
     contacts_of = dict(contacts) if isinstance(contacts, Mapping) else {"": contacts}
-    for name, kind, given in (("e", Restitution, e_of), ("contacts", Contacts, contacts_of)):
-        for variant, own in given.items():
-            require_kind(f"{name}[{variant!r}]" if variant else name, own, kind, type(None))
-            cases.get(variant, case_of(case)).require_own_joints(own)
-    variants = dict.fromkeys((*e_of, *contacts_of))
-    return [inputs.Section(one, inputs.of_contacts(e_of.get(one), contacts_of.get(one), words)) for one in variants]
+    for name, kind, by_variant_name in (("e", Restitution, e_of), ("contacts", Contacts, contacts_of)):
+        for variant, value in by_variant_name.items():
+            require_kind(f"{name}[{variant!r}]" if variant else name, value, kind, type(None))
+            cases.get(variant, case_of(case)).require_own_joints(value)
+    rows = {name: inputs.contact_inputs(e_of.get(name), contacts_of.get(name), words) for name in (*e_of, *contacts_of)}
+    return [inputs.InputGroup(variant, contact_rows) for variant, contact_rows in rows.items()]
 
 
 class InputTable(NamedTuple):
@@ -467,94 +471,100 @@ class InputTable(NamedTuple):
     file: Path | None
 
 
-def lists_of(subjects: Sequence[Subject], path: Path, words: Words) -> list[InputTable]:
+def input_tables(subjects: Sequence[Subject], path: Path, words: Words) -> list[InputTable]:
     """The tables of what a report is of, each once, in the page or in a file beside it."""
-    found: list[InputTable] = []
-    for one_of in subjects:
-        both = (inputs.listings(one_of, words, written) for written in (words.number, "{:.12g}".format))
-        for short, exact in zip(*both, strict=True):
-            one = exact if len(exact.rows) > inputs.LISTED else short
-            if any(other.listing == one for other in found):
+    tables: list[InputTable] = []
+    for subject in subjects:
+        rounded, exact = (inputs.listings(subject, words, written) for written in (words.number, "{:.12g}".format))
+        for for_page, for_file in zip(rounded, exact, strict=True):
+            listing = for_file if len(for_file.rows) > inputs.LONGEST_TABLE else for_page
+            if any(other.listing == listing for other in tables):
                 continue
-            number = 1 + sum(other.listing.key == one.key for other in found)
-            name = f"{path.stem}_{one.key}{f'_{number}' if number > 1 else ''}.csv"
-            found.append(InputTable(one, path.with_name(name) if one is exact else None))
-    return found
+            number = 1 + sum(other.listing.key == listing.key for other in tables)
+            name = f"{path.stem}_{listing.key}{f'_{number}' if number > 1 else ''}.csv"
+            tables.append(InputTable(listing, path.with_name(name) if listing is for_file else None))
+    return tables
 
 
-def input_table_parts(one: InputTable, words: Words) -> list[Markup]:
+def input_table_parts(input_table: InputTable, words: Words) -> list[Markup]:
     """A table of inputs, or the name of the file that has it."""
-    heading = element("p", element("b", one.listing.heading), kind="head")
-    if one.file is not None:
-        return [heading, element("p", words("in_a_file", count=len(one.listing.rows), file=one.file.name))]
-    return [heading, table(one.listing.columns, one.listing.rows, kind="runs")]
+    listing, file = input_table
+    heading = element("p", element("b", listing.heading), kind="head")
+    if file is not None:
+        return [heading, element("p", words("in_a_file", count=len(listing.rows), file=file.name))]
+    return [heading, table(listing.columns, listing.rows, kind="runs")]
 
 
-def appendix(given: Mapping[str, Sequence[inputs.Section]], rests: Mapping[str, str], words: Words) -> list[Markup]:
+def inputs_section(
+    groups_by_heading: Mapping[str, Sequence[inputs.InputGroup]], bases: Mapping[str, str], words: Words
+) -> list[Markup]:
     """The inputs and what they rest on."""
-    parts = [element("h2", words("inputs"))]
-    for heading, sections in given.items():
-        for some in inputs.beside([section for section in sections if section.rows]):
+    pieces = [element("h2", words("inputs"))]
+    for heading, groups in groups_by_heading.items():
+        for columns in inputs.side_by_side([group for group in groups if group.rows]):
             cells = []
-            for row in some.rows:
-                one = next(cell for cell in row if cell is not None)
-                rest = rests[one.key] if one.key in rests else element("td", words(one.rests), kind="short")
-                cells.append((one.name, *alike([DASH if cell is None else cell.value for cell in row]), rest))
-            names = some.names if any(some.names) else [words("input_value")]
+            for row in columns.rows:
+                known = next(cell for cell in row if cell is not None)
+                basis = bases[known.key] if known.key in bases else element("td", words(known.basis), kind="short")
+                cells.append((known.name, *spanned([DASH if cell is None else cell.value for cell in row]), basis))
+            names = columns.names if any(columns.names) else [words("input_value")]
             kind = "inputs" if len(names) == 1 else "beside"
-            parts.append(element("p", element("b", heading), kind="head"))
-            parts.append(table([words("input_name"), *names, words("input_basis")], cells, kind=kind))
-    return parts
+            pieces.append(element("p", element("b", heading), kind="head"))
+            pieces.append(table([words("input_name"), *names, words("input_basis")], cells, kind=kind))
+    return pieces
 
 
-def alike(values: Sequence[str]) -> Sequence[str]:
+def spanned(values: Sequence[str]) -> Sequence[str]:
     """The cells of a row, or one that spans them all where they are alike."""
     if len(values) == 1 or len(set(values)) > 1:
         return values
     return [element("td", values[0], colspan=str(len(values)), kind="all")]
 
 
-def every_run(parts: Sequence[Part], words: Words) -> list[Markup]:
+def run_tables(parts: Sequence[Part], words: Words) -> list[Markup]:
     """The records, and every run, those of each wall in a table."""
     runs = [run for part in parts for run in part.runs]
     if not runs:
         return []
-    grounds, called = [run.response.case.grounds for run in runs], records_called(runs, words)
-    found = []
-    if called:
+    grounds, names = [run.response.case.grounds for run in runs], names_by_record(runs, words)
+    pieces = []
+    if names:
         keys = ("name", "direction", "peak", "peak_g", "duration", "step", "origin")
         heads = [words(f"motion_{key}") for key in keys]
-        rows = content.of_motions(grounds, called, words)
-        found += [element("h2", words("motions")), table(heads, rows, right=(2, 3, 4, 5))]
-    moved = [part for part in parts if part.runs]
-    found.append(element("h2", words("every_run")))
-    for part in moved:
-        found += [*[element("h3", part.names_run)] * (len(moved) > 1), *runs_of(part.whole, part.runs, called, words)]
-    if forces := content.forces_kept(runs, words):
+        rows = content.motion_rows(grounds, names, words)
+        pieces += [element("h2", words("motions")), table(heads, rows, right=(2, 3, 4, 5))]
+    parts_with_runs = [part for part in parts if part.runs]
+    pieces.append(element("h2", words("every_run")))
+    for part in parts_with_runs:
+        pieces += [element("h3", part.run_names)] * (len(parts_with_runs) > 1)
+        pieces.append(run_table(part.content, part.runs, names, words))
+    if forces := content.kept_force_rows(runs, words):
         heads = [words(f"forces_{key}") for key in ("run", "reaction", "normal", "joint")]
-        found.append(table(heads, forces, right=(1, 2)))
-    return found
+        pieces.append(table(heads, forces, right=(1, 2)))
+    return pieces
 
 
-def records_called(runs: Sequence[Run], words: Words) -> dict[str, str]:
+def names_by_record(runs: Sequence[Run], words: Words) -> dict[str, str]:
     """What the records of runs are called, by their own names."""
     motions = [motion for run in runs for motion in run.response.case.grounds.values()]
-    own = (motion.name.removesuffix(REVERSED) for motion in motions)
-    return dict(zip(own, named_records(motions, words), strict=True))
+    own_names = (motion.name.removesuffix(REVERSED) for motion in motions)
+    return dict(zip(own_names, record_names(motions, words), strict=True))
 
 
-def runs_of(whole: Content, runs: Sequence[Run], called: Mapping[str, str], words: Words) -> list[Markup]:
+def run_table(subject: Content, runs: Sequence[Run], names: Mapping[str, str], words: Words) -> Markup:
     """The table of the runs of a wall or masonry, with what their records are called."""
     grounds = [run.response.case.grounds for run in runs]
-    beside = [name for name in ("vertical", "transverse") if any(name in ground for ground in grounds)]
+    directions = [name for name in ("vertical", "transverse") if any(name in ground for ground in grounds)]
     variants, ties = any(run.variant for run in runs), any(run.response.ties for run in runs)
-    columns = ["variant"] * variants + ["run", *beside, "polarity", *whole.COLUMNS] + ["force", "drawn", "broke"] * ties
+    columns = ["variant"] * variants + ["run", *directions, "polarity", *subject.COLUMNS]
+    columns += ["force", "drawn", "broke"] * ties
     rows = list[list[str]]()
     for run, ground in zip(runs, grounds, strict=True):
-        others = [called[ground[name].name.removesuffix(REVERSED)] if name in ground else DASH for name in beside]
-        own = [run.variant] * variants + [run.label, *others, MINUS if run.turned else "+"]
-        rows.append([*own, *whole.result(run.response, words), *(content.tied(run.response, words) if ties else [])])
+        others = [names[ground[name].name.removesuffix(REVERSED)] if name in ground else DASH for name in directions]
+        cells = [run.variant] * variants + [run.label, *others, MINUS if run.is_reversed else "+"]
+        cells += subject.result_cells(run.response, words)
+        rows.append([*cells, *(content.tie_cells(run.response, words) if ties else [])])
     heads = [words(f"run_{key}") for key in columns]
-    left = ("variant", "run", *beside, "polarity", "outcome", "fallen")
+    left = ("variant", "run", *directions, "polarity", "outcome", "fallen")
     right = [i for i, name in enumerate(columns) if name not in left]
-    return [table(heads, rows, right=right, kind="runs")]
+    return table(heads, rows, right=right, kind="runs")

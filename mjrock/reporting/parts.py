@@ -11,7 +11,7 @@ from ..problem.wall.bending import HorizontalBending
 from ..study.loading.mechanism_curve import case_of
 from . import verdicts
 from .content import Content, content_of
-from .drawings import OTHERS, drawn
+from .drawings import OTHERS, drawing_of
 from .markup import Markup, framed, image_of
 from .pictures import Run, by_variant
 from .texts import Words
@@ -43,9 +43,9 @@ class Part:
 
     def add(self, name: str, subject: Subject) -> None:
         """Add a subject, or a further name of one that is drawn alike."""
-        for one in self.subjects:
-            if _looks(one.subject) == _looks(subject):
-                one.names.extend([name] * (name not in one.names))
+        for named in self.subjects:
+            if _drawn_features(named.subject) == _drawn_features(subject):
+                named.names.extend([name] * (name not in named.names))
                 return
         self.subjects.append(NamedSubject([name], subject))
 
@@ -60,21 +60,21 @@ class Part:
         return "; ".join(dict.fromkeys(name for one in self.subjects for name in one.names))
 
     @property
-    def names_run(self) -> str:
+    def run_names(self) -> str:
         """The names of what is run of it."""
         return "; ".join(filter(None, by_variant(self.runs))) or self.names
 
     @property
-    def whole(self) -> Content:
+    def content(self) -> Content:
         """It as the report sees it, by the first of its subjects."""
         return content_of(self.subjects[0].subject)
 
 
-def parts_of(own: str, case: Subject, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[Part]:
+def parts_of(case_name: str, case: Subject, mechanisms: Sequence[Mechanism], runs: Sequence[Run]) -> list[Part]:
     """The parts of a report, that with the least ratio first.
 
     Args:
-        own: the name of the case where nothing else is of it.
+        case_name: the name of the case where nothing else is of it.
         case: the wall, corner or masonry that the report is of.
         mechanisms: with their checks.
         runs: each of the case, or of the mechanism that its variant is named after.
@@ -83,18 +83,18 @@ def parts_of(own: str, case: Subject, mechanisms: Sequence[Mechanism], runs: Seq
     by_name: dict[str, Part] = {}
     for mechanism in verdicts.ranked(mechanisms):
         subjects = mechanism.subjects or [case]
-        part = by_name[mechanism.name] = _of(subjects[0], parts)
+        part = by_name[mechanism.name] = _part_of(subjects[0], parts)
         part.mechanisms.append(mechanism)
         for subject in subjects:
             part.add(mechanism.name, subject)
-    for variant, some in by_variant(runs).items():
-        shaken = case if not variant and isinstance(case, OTHERS) else some[0].response.case
-        part = by_name[variant or own] if (variant or own) in by_name else _of(shaken, parts)
-        part.runs += some
-        part.add(variant or own, part.body if isinstance(part.body, OTHERS) else shaken)
-    for part in [part for part in parts if part.is_of(case)] if parts else [_of(case, parts)]:
-        if all(_looks(one.subject) != _looks(case) for one in part.subjects):
-            part.subjects.insert(0, NamedSubject([own], case))
+    for variant, runs_of_variant in by_variant(runs).items():
+        subject_run = case if not variant and isinstance(case, OTHERS) else runs_of_variant[0].response.case
+        part = by_name[variant or case_name] if (variant or case_name) in by_name else _part_of(subject_run, parts)
+        part.runs += runs_of_variant
+        part.add(variant or case_name, part.body if isinstance(part.body, OTHERS) else subject_run)
+    for part in [part for part in parts if part.is_of(case)] if parts else [_part_of(case, parts)]:
+        if all(_drawn_features(named.subject) != _drawn_features(case) for named in part.subjects):
+            part.subjects.insert(0, NamedSubject([case_name], case))
     return parts
 
 
@@ -110,7 +110,7 @@ def is_of(case: AnyCase, subject: Subject) -> bool:
     return bool(case.built == case_of(subject).built)
 
 
-def _of(subject: Subject, parts: list[Part]) -> Part:
+def _part_of(subject: Subject, parts: list[Part]) -> Part:
     """The part of a subject, which is added where there is none."""
     found = next((part for part in parts if part.is_of(subject)), None)
     if found is None:
@@ -118,22 +118,22 @@ def _of(subject: Subject, parts: list[Part]) -> Part:
     return found
 
 
-def _looks(subject: Subject) -> tuple[object, ...]:
+def _drawn_features(subject: Subject) -> tuple[object, ...]:
     """What a drawing shows of a subject."""
-    one = subject if isinstance(subject, OTHERS) else case_of(subject)
-    return body_of(one), getattr(one, "effects", ()), getattr(one, "side_stop", None)
+    drawn = subject if isinstance(subject, OTHERS) else case_of(subject)
+    return body_of(drawn), getattr(drawn, "effects", ()), getattr(drawn, "side_stop", None)
 
 
 def drawings_of(part: Part, parts: Sequence[Part], words: Words) -> list[Markup]:
     """The drawings of a part, each once, with its mechanisms or variants in the caption where there are several."""
-    borne = [one.result for mechanism in part.mechanisms for one in mechanism.loads]
-    found: dict[tuple[str, str], list[str]] = {}
+    static_answers = [check.result for mechanism in part.mechanisms for check in mechanism.loads]
+    names_by_drawing: dict[tuple[str, str], list[str]] = {}
     for names, subject in part.subjects:
-        figure, caption = drawn(subject, words, borne)
-        found.setdefault((image_of(figure, words), caption), []).extend(names)
-    if len(parts) == len(found) == 1:
-        return [framed(image, caption) for image, caption in found]
+        figure, caption = drawing_of(subject, words, static_answers)
+        names_by_drawing.setdefault((image_of(figure, words), caption), []).extend(names)
+    if len(parts) == len(names_by_drawing) == 1:
+        return [framed(image, caption) for image, caption in names_by_drawing]
     return [
         framed(image, f"{'; '.join(names)}: {caption[0].lower()}{caption[1:]}")
-        for (image, caption), names in found.items()
+        for (image, caption), names in names_by_drawing.items()
     ]

@@ -26,48 +26,48 @@ from ..result.bodies import BodyMotion
 from ..result.response import Response
 from ..study.loading.design import Design
 from ..study.loading.limit_analysis import LimitCurve
-from ..study.loading.load_check import Borne
+from ..study.loading.load_check import StaticAnswer
 from ..study.loading.mechanism_check import MechanismCheck
 from ..study.loading.pushover import PushoverCurve
 from .texts import DASH, Words, effect_name
-from .verdicts import Mechanism, condition, effect_label
+from .verdicts import REVERSED, Mechanism, condition_text, effect_label
 
-WIDE = 7.0
+PICTURE_WIDTH = 7.0
 """Width of a picture [inch]."""
-SMALL = 8.0
+LEAST_TYPE = 8.0
 """Size of the least type [pt]."""
-TALL = 2.5
+TALLEST_WALL = 2.5
 """Most height of the drawing of a wall [inch]."""
-BELOW, ABOVE, BEFORE, AWAY, LEAST = 0.36, 0.36, 0.45, 0.36, 1.05
+ROOM_BELOW, ROOM_ABOVE, ROOM_BEFORE, NAME_DISTANCE, LEAST_HEIGHT = 0.36, 0.36, 0.45, 0.36, 1.05
 """Room below, above and before a drawing, from a wall to names outside, and least height of a wall in it [inch]."""
-LINE = 10.0
+LINE_HEIGHT = 10.0
 """Height of a line of text [pt]."""
 STRIP_ROWS = 12
 """Most rows of a picture of largest displacements."""
-IN_A_PICTURE = 6
+PANELS_OF_PICTURE = 6
 """Most records whose motion is drawn in one picture."""
-PANELS = 12
+MOST_PANELS = 12
 """Most records whose motion is drawn."""
-FAR = 2.0
+FARTHEST_LIMIT = 2.0
 """A limit that is farther than the motion by this factor would flatten it."""
-NAMED = 5
+MOST_LINE_STYLES = 5
 """Most runs of one record whose lines differ."""
-PLACES = (
+NAME_PLACES = (
     ((4, 4), "left"), ((-4, -11), "right"), ((-4, 4), "right"), ((4, -11), "left"), ((7, -4), "left"),
     ((0, 14), "center"), ((0, 22), "center"),
 )  # fmt: skip
 """Where a name may stand beside its point [pt], and how it is aligned."""
-DOT = 5.0
+HALF_DOT = 5.0
 """Half of the room that a point takes in a diagram [pixels]."""
-OPENED = 0.06
+DRAWN_ROTATION = 0.06
 """Rotation at which the mechanism is drawn [rad]."""
 HOLDS, FAILS, TIE = "#0b7a4b", "#b3261e", "0.2"
 """Colours of what holds and of what fails, which differ in lightness too, and of where ties yield and break."""
 
 
-LABEL: Look = {"textcoords": "offset points", "fontsize": SMALL, "zorder": 9}
+LABEL: Look = {"textcoords": "offset points", "fontsize": LEAST_TYPE, "zorder": 9}
 """How the labels of a drawing are written."""
-UNDER: Look = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5}
+LABEL_BOX: Look = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5}
 """What lies under them."""
 
 
@@ -80,7 +80,6 @@ class Run(NamedTuple):
         label: what it is called.
         record: number of its record.
         motion: name of the record, as it was recorded.
-        turned: whether the record is reversed.
         largest: its largest displacement [m], infinite where it overturned or a block fell.
     """
 
@@ -89,8 +88,13 @@ class Run(NamedTuple):
     label: str
     record: int
     motion: str
-    turned: bool
     largest: float
+
+    @property
+    def is_reversed(self) -> bool:
+        """Whether the record is reversed."""
+        motion = self.response.case.motion
+        return motion is not None and motion.name.endswith(REVERSED)
 
     @property
     def line(self) -> str:
@@ -103,7 +107,7 @@ def by_variant(runs: Sequence[Run]) -> dict[str, list[Run]]:
     return {name: [run for run in runs if run.variant == name] for name in dict.fromkeys(run.variant for run in runs)}
 
 
-class Drawing(NamedTuple):
+class WallDrawing(NamedTuple):
     """Section and elevation of a wall.
 
     Args:
@@ -115,54 +119,60 @@ class Drawing(NamedTuple):
     one_scale: bool
 
 
-def wall_drawn(case: Case, words: Words) -> Drawing:
+def wall_drawing(case: Case, words: Words) -> WallDrawing:
     """Section and elevation with sizes, the hinge, the mechanism that opens about it, and the names of the effects."""
-    figure = Figure(figsize=(WIDE, TALL))
+    figure = Figure(figsize=(PICTURE_WIDTH, TALLEST_WALL))
     left, right = figure.add_axes((0.0, 0.0, 0.5, 1.0)), figure.add_axes((0.5, 0.0, 0.5, 1.0))
     section(left, case, words("stop"))
     loaded = any(force[0] == 0 for _, force in constant_forces_of(case.effects).values())
-    high = left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h
-    elevation(right, case, (0.0, high))
-    opened = Bodies.of_moving(BodyMotion(case, np.zeros(1), case.wall.pose(np.array([OPENED]))[None]))
+    top = left.get_ylim()[1] if loaded else 1.04 * 2 * case.block.h
+    elevation(right, case, (0.0, top))
+    opened = Bodies.of_moving(BodyMotion(case, np.zeros(1), case.wall.pose(np.array([DRAWN_ROTATION]))[None]))
     left.fill(*opened.corners(0)[0].T, facecolor="none", edgecolor=FAILS, linestyle="--", linewidth=0.9, zorder=3)
-    named = _names(case, words)
-    outside = max([width_of(figure, words("hinge"), SMALL), *(one.width for one in named if not one.inside)])
-    scale, one_scale = _placed(left, right, high, max(1.05, AWAY + outside))
-    left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, 3), color=FAILS, **LABEL).set_bbox(UNDER)
-    _write_names(left, case, scale, named)
+    names = _names(case, words)
+    widths = [width_of(figure, words("hinge"), LEAST_TYPE), *(name.width for name in names if not name.inside)]
+    scales = _place_side_by_side(left, right, top, max(1.05, NAME_DISTANCE + max(widths)))
+    left.annotate(words("hinge"), (case.block.half_base, 0.0), (8, 3), color=FAILS, **LABEL).set_bbox(LABEL_BOX)
+    _write_names(left, case, scales.section, names)
     for ax, title in ((left, "section"), (right, "elevation")):
         ax.axis("off")
         ax.set_title("")  # that of the drawing, in English and in the middle
-        ax.set_title(words(title), fontsize=SMALL, loc="left")
+        ax.set_title(words(title), fontsize=LEAST_TYPE, loc="left")
         for text in ax.texts:
-            text.set_fontsize(max(SMALL, text.get_fontsize()))
-    return Drawing(figure, one_scale)
+            text.set_fontsize(max(LEAST_TYPE, text.get_fontsize()))
+    return WallDrawing(figure, scales.section == scales.elevation)
 
 
-def _placed(left: Axes, right: Axes, high: float, between: float) -> tuple[float, bool]:
-    """Place section and elevation side by side up to a height [m] in one scale, which is returned [inch/m].
+class Scales(NamedTuple):
+    """The scales of section and elevation [inch/m]."""
 
-    Between them is room for names [inch]. Where the elevation is so long that the section would be too small to read,
-    each has a scale of its own, and the second value is False.
+    section: float
+    elevation: float
+
+
+def _place_side_by_side(left: Axes, right: Axes, top: float, between: float) -> Scales:
+    """Place section and elevation side by side up to a height [m].
+
+    Between them is room for names [inch]. They have one scale, unless the elevation is so long that the section would
+    be too small to read.
     """
-    figure, beside = figure_of(left), BEFORE + between
-    wide, long = (float(np.ptp(ax.get_xlim())) for ax in (left, right))
-    scale = min((TALL - BELOW - ABOVE) / high, (WIDE - beside) / (wide + long))
-    one_scale = scale * high >= LEAST
-    if not one_scale:
-        scale = (TALL - BELOW - ABOVE) / high
-    tall, scales = scale * high + BELOW + ABOVE, (scale, scale)
-    if not one_scale:
-        scales = scale, (WIDE - beside - scale * wide) / long
-    figure.set_size_inches(WIDE, tall)
-    starts = BEFORE, WIDE - scales[1] * long
+    figure, room = figure_of(left), ROOM_BEFORE + between
+    widths = [float(np.ptp(ax.get_xlim())) for ax in (left, right)]
+    tallest = (TALLEST_WALL - ROOM_BELOW - ROOM_ABOVE) / top
+    common = min(tallest, (PICTURE_WIDTH - room) / sum(widths))
+    one_scale = common * top >= LEAST_HEIGHT
+    left_over = PICTURE_WIDTH - room - tallest * widths[0]
+    scales = Scales(common, common) if one_scale else Scales(tallest, left_over / widths[1])
+    height = scales.section * top + ROOM_BELOW + ROOM_ABOVE
+    figure.set_size_inches(PICTURE_WIDTH, height)
+    starts = [ROOM_BEFORE, PICTURE_WIDTH - scales.elevation * widths[1]]
     if one_scale:  # in the middle of what is left
-        starts = starts[0], 0.5 * (starts[1] + beside + scale * wide)
-    for ax, start, own, span in zip((left, right), starts, scales, (wide, long), strict=True):
-        low = BELOW / own
-        ax.set_ylim(-low, high)
-        ax.set_position((start / WIDE, 0.0, own * span / WIDE, own * (high + low) / tall))
-    return scale, one_scale
+        starts[1] = 0.5 * (starts[1] + room + common * widths[0])
+    for ax, start, scale, width in zip((left, right), starts, scales, widths, strict=True):
+        below = ROOM_BELOW / scale
+        ax.set_ylim(-below, top)
+        ax.set_position((start / PICTURE_WIDTH, 0.0, scale * width / PICTURE_WIDTH, scale * (top + below) / height))
+    return scales
 
 
 class Name(NamedTuple):
@@ -183,7 +193,7 @@ class Name(NamedTuple):
 
 def _names(case: Case, words: Words) -> list[Name]:
     """The names of the effects with their heights."""
-    figure, found = Figure(), []
+    figure, names = Figure(), []
     for name, effect in case.named.items():
         if effect.report_item is None:
             continue
@@ -191,8 +201,8 @@ def _names(case: Case, words: Words) -> list[Name]:
         inside = effect.on_face or len(effect.outline) > 0
         if len(effect.outline):  # below the crack of wedges there is room
             z, text = 0.15 * z, fill(text, 12)
-        found.append(Name(text, (case.block.inner_face(z), z), inside, width_of(figure, text, SMALL)))
-    return found
+        names.append(Name(text, (case.block.inner_face(z), z), inside, width_of(figure, text, LEAST_TYPE)))
+    return names
 
 
 def _write_names(ax: Axes, case: Case, scale: float, names: Sequence[Name]) -> None:
@@ -200,25 +210,25 @@ def _write_names(ax: Axes, case: Case, scale: float, names: Sequence[Name]) -> N
     lines: dict[bool, list[float]] = {True: [], False: []}
     for text, (face, z), inside, _ in names:
         level = 72 * scale * z + (3 if inside else -10)
-        while any(abs(level - other) < LINE for other in lines[inside]):
-            level -= LINE
+        while any(abs(level - taken) < LINE_HEIGHT for taken in lines[inside]):
+            level -= LINE_HEIGHT
         lines[inside].append(level)
-        x, beside = (face, -3) if inside else (case.block.b, 72 * AWAY)
-        note = ax.annotate(text, (x, z), (beside, level - 72 * scale * z), ha="right" if inside else "left", **LABEL)
-        note.set_bbox(UNDER)
+        x, offset = (face, -3) if inside else (case.block.b, 72 * NAME_DISTANCE)
+        note = ax.annotate(text, (x, z), (offset, level - 72 * scale * z), ha="right" if inside else "left", **LABEL)
+        note.set_bbox(LABEL_BOX)
 
 
 def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | None:
     """The curve of each kinematic check with its capacities and the demands; None without one."""
-    given = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
-    if not given:
+    checks = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
+    if not checks:
         return None
-    columns = min(3 if len(given) % 2 else 2, len(given))
-    figure, axes = figure_of_panels(len(given), columns, (WIDE / columns, 2.25))
-    named = []
-    for ax, (name, check) in zip(axes.flat, given, strict=False):
+    columns = min(3 if len(checks) % 2 else 2, len(checks))
+    figure, axes = figure_of_panels(len(checks), columns, (PICTURE_WIDTH / columns, 2.25))
+    named_points = []
+    for ax, (name, check) in zip(axes.flat, checks, strict=False):
         ax.locator_params(nbins=5 if columns > 2 else "auto")
-        named.append(_curve(ax, check, words))
+        named_points.append(_curve(ax, check, words))
         ax.set_title(name, fontsize=9)
     marks: list[tuple[Look, str]] = [
         ({"color": "#12406b"}, words("capacity_curve")),
@@ -227,11 +237,11 @@ def capacity_curves(mechanisms: Sequence[Mechanism], words: Words) -> Figure | N
         ({"marker": "D", "linestyle": "", "color": FAILS}, words("demand_fails")),
     ]
     handles = [Line2D([], [], **look) for look, _ in marks]
-    legend_below(figure, handles, [label for _, label in marks], 4, fontsize=SMALL)
+    legend_below(figure, handles, [label for _, label in marks], 4, fontsize=LEAST_TYPE)
     layout = figure.get_layout_engine()
     assert layout is not None
     layout.execute(figure)
-    for ax, points in zip(axes.flat, named, strict=False):
+    for ax, points in zip(axes.flat, named_points, strict=False):
         _write_beside(ax, points)
     return figure
 
@@ -254,16 +264,16 @@ def _curve(ax: Axes, check: MechanismCheck, words: Words) -> list[Point]:
     top = 1.15 * max(float(check.a.max()), *demands)
     points: list[Point] = []
     for name, state in check.states.items():
-        held = float(np.interp(state.capacity, check.d, check.a))
-        stiff = (2 * math.pi / state.period) ** 2
+        a_at_capacity = float(np.interp(state.capacity, check.d, check.a))
+        omega_squared = (2 * math.pi / state.period) ** 2
         end = max(state.demand, state.capacity)
-        ax.plot([0.0, end], [0.0, min(stiff * end, top)], color="0.6", linewidth=0.7, linestyle=":")
+        ax.plot([0.0, end], [0.0, min(omega_squared * end, top)], color="0.6", linewidth=0.7, linestyle=":")
         colour = HOLDS if state.ratio >= 1 else FAILS
-        ax.plot(state.capacity, held, "o", color="0.2", markersize=5, zorder=5)
-        ax.plot(state.demand, stiff * state.demand, "D", color=colour, markersize=5, zorder=6)
-        points += [Point(name, state.capacity, held), Point(name, state.demand, stiff * state.demand)]
-    far = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
-    ax.set(xlim=(0, 1.1 * far), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
+        ax.plot(state.capacity, a_at_capacity, "o", color="0.2", markersize=5, zorder=5)
+        ax.plot(state.demand, omega_squared * state.demand, "D", color=colour, markersize=5, zorder=6)
+        points += [Point(name, state.capacity, a_at_capacity), Point(name, state.demand, omega_squared * state.demand)]
+    largest_d = max(check.d_0, *(1.1 * state.demand for state in check.states.values()))
+    ax.set(xlim=(0, 1.1 * largest_d), ylim=(0, top), xlabel=words("axis_d"), ylabel=words("axis_a"))
     small(ax)
     return [*points, Point("d₀", check.d_0, 0.0)]
 
@@ -272,29 +282,29 @@ def _write_beside(ax: Axes, points: Sequence[Point]) -> None:
     """Write names beside points of a diagram whose place is known, each where it lies on no other name and on no point
     if there is such a place."""
     dots = ax.transData.transform([(d, a) for _, d, a in points])
-    taken = [Bbox.from_extents(*(dot - DOT), *(dot + DOT)) for dot in dots]
+    boxes = [Bbox.from_extents(*(dot - HALF_DOT), *(dot + HALF_DOT)) for dot in dots]
     for i, (name, d, a) in enumerate(points):
-        tried = []
-        for beside, align in PLACES:
-            note = ax.annotate(name, (d, a), beside, ha=align, **LABEL)
+        trials = []
+        for offset, align in NAME_PLACES:
+            note = ax.annotate(name, (d, a), offset, ha=align, **LABEL)
             box = note.get_window_extent()
-            hit = sum(box.overlaps(other) for other in [*taken[:i], *taken[i + 1 :]])
+            overlaps = sum(box.overlaps(other) for other in [*boxes[:i], *boxes[i + 1 :]])
             inside = ax.bbox.contains(box.x1, box.y1) and ax.bbox.contains(box.x0, box.y0)
-            tried.append((hit + 2 * (not inside), beside, align, box))
+            trials.append((overlaps + 2 * (not inside), offset, align, box))
             note.remove()
-        _, beside, align, box = min(tried, key=lambda one: one[0])
-        ax.annotate(name, (d, a), beside, ha=align, **LABEL)
-        taken.append(box)
+        _, offset, align, box = min(trials, key=lambda trial: trial[0])
+        ax.annotate(name, (d, a), offset, ha=align, **LABEL)
+        boxes.append(box)
 
 
-def borne_drawn(result: Borne, words: Words) -> Figure | None:
+def static_answer_figure(result: StaticAnswer, words: Words) -> Figure | None:
     """The mechanism of limit analysis, or what is borne over the displacement; None where nothing gives way."""
     if isinstance(result, Collapse) and not (result.moving and result.masonry):
         return None
-    figure = Figure(figsize=(WIDE, 2.6), layout="constrained")
+    figure = Figure(figsize=(PICTURE_WIDTH, 2.6), layout="constrained")
     if isinstance(result, Collapse):
-        space = result.masonry is not None and result.masonry.in_space
-        small(mechanism(figure.add_subplot(projection="3d" if space else None), result))
+        in_space = result.masonry is not None and result.masonry.in_space
+        small(mechanism(figure.add_subplot(projection="3d" if in_space else None), result))
         return figure
     ax = figure.subplots()
     if isinstance(result, PushoverCurve):
@@ -302,33 +312,34 @@ def borne_drawn(result: Borne, words: Words) -> Figure | None:
     elif isinstance(result, LimitCurve):
         x, y, labels = 1e3 * result.displacement, result.multiplier, ("axis_moved", "axis_multiplier")
     else:
-        force = result.unit == "N"
-        y = (1e-3 if force else 1.0) * result.force
-        x, labels = 1e3 * result.displacement, ("axis_moved", "axis_force" if force else "axis_multiplier")
+        is_force = result.unit == "N"
+        y = (1e-3 if is_force else 1.0) * result.force
+        x, labels = 1e3 * result.displacement, ("axis_moved", "axis_force" if is_force else "axis_multiplier")
     ax.plot(x, y, color="#12406b", linewidth=1.8)
     if isinstance(result, PushoverCurve | LimitCurve):
         scale = 1e3 if isinstance(result, LimitCurve) else 1.0
-        for of, key, marker in zip(result.ties, ("tie_yields", "tie_breaks"), "sX", strict=True):
-            for tie, at in of.items():
-                held = float(np.interp(scale * at, x, y))
-                ax.plot(scale * at, held, marker, color=TIE, markersize=6, zorder=5)
+        for events, key, marker in zip(result.ties, ("tie_yields", "tie_breaks"), "sX", strict=True):
+            for tie, place in events.items():
+                multiplier_there = float(np.interp(scale * place, x, y))
+                ax.plot(scale * place, multiplier_there, marker, color=TIE, markersize=6, zorder=5)
                 text = words(key, name=effect_name(tie, words))
-                ax.annotate(text, (scale * at, held), (6, 4), **LABEL)
+                ax.annotate(text, (scale * place, multiplier_there), (6, 4), **LABEL)
     ax.set(xlabel=words(labels[0]), ylabel=words(labels[1]), ylim=(min(0.0, float(y.min())), 1.15 * float(y.max())))
     small(ax)
     return figure
 
 
-def design_drawn(found: Design, words: Words) -> Figure:
+def design_figure(result: Design, words: Words) -> Figure:
     """Capacity over demand of every condition for each value that was tried."""
-    figure = Figure(figsize=(WIDE, 3.0), layout="constrained")
-    ax = design(figure.subplots(), found)
-    named = {one.label: condition(one, words) for trial in found.trials for one in trial.conditions}
+    figure = Figure(figsize=(PICTURE_WIDTH, 3.0), layout="constrained")
+    ax = design(figure.subplots(), result)
+    conditions = [condition for trial in result.trials for condition in trial.conditions]
+    texts = {condition.label: condition_text(condition, words) for condition in conditions}
     for line in ax.get_lines():
-        line.set_label(named.get(str(line.get_label()), line.get_label()))
+        line.set_label(texts.get(str(line.get_label()), line.get_label()))
     ax.set_xticks(ax.get_xticks(), [words.marked(label.get_text()) for label in ax.get_xticklabels()])
     ax.set_title("")
-    ax.legend(fontsize=SMALL)
+    ax.legend(fontsize=LEAST_TYPE)
     small(ax)
     return figure
 
@@ -354,92 +365,94 @@ def _strip(
 ) -> Figure:
     """Some of the rows, in the scale of all runs."""
     variants = list(dict.fromkeys(run.variant for run in runs))
-    figure = Figure(figsize=(WIDE, 1.5 + 0.24 * len(rows)), layout="constrained")
+    figure = Figure(figsize=(PICTURE_WIDTH, 1.5 + 0.24 * len(rows)), layout="constrained")
     ax = figure.subplots()
-    known, alone = [run.largest for run in runs if math.isfinite(run.largest)], not any(run.turned for run in runs)
-    top = 1.08 * max([*known, *(limit for _, limit in limits), 1e-6])
+    finite = [run.largest for run in runs if math.isfinite(run.largest)]
+    of_one_polarity = not any(run.is_reversed for run in runs)
+    longest = 1.08 * max([*finite, *(limit for _, limit in limits), 1e-6])
     for run in (run for run in runs if run.label in rows):
         order = variants.index(run.variant)
         colour = OWN[order % len(OWN)]["color"]
         y = rows.index(run.label) + 0.22 * (order - 0.5 * (len(variants) - 1))
-        y += 0.0 if alone else 0.09 if run.turned else -0.09
-        x = 1e3 * (run.largest if math.isfinite(run.largest) else 1.06 * top)
+        y += 0.0 if of_one_polarity else 0.09 if run.is_reversed else -0.09
+        x = 1e3 * (run.largest if math.isfinite(run.largest) else 1.06 * longest)
         look = {"marker": "o" if math.isfinite(run.largest) else "X", "color": colour}
-        ax.plot(x, y, linestyle="", markersize=5.5, markerfacecolor="white" if run.turned else colour, **look)
-    ax.axvspan(1e3 * top, 1.12e3 * top, color="0.93", zorder=0)
-    above: Look = {"transform": ax.get_xaxis_transform(), "fontsize": SMALL, "ha": "center", "va": "bottom"}
-    ax.text(1.06e3 * top, 1.01, beyond, **above)
+        ax.plot(x, y, linestyle="", markersize=5.5, markerfacecolor="white" if run.is_reversed else colour, **look)
+    ax.axvspan(1e3 * longest, 1.12e3 * longest, color="0.93", zorder=0)
+    above_axes: Look = {"transform": ax.get_xaxis_transform(), "fontsize": LEAST_TYPE, "ha": "center", "va": "bottom"}
+    ax.text(1.06e3 * longest, 1.01, beyond, **above_axes)
     for label, limit in limits:
         ax.axvline(1e3 * limit, color="0.35", linewidth=0.9, linestyle="--", zorder=1)
-        side = "right" if limit == max(one for _, one in limits) else "center"
-        ax.text(1e3 * limit, 1.01, label, **(above | {"ha": side}))
+        side = "right" if limit == max(other for _, other in limits) else "center"
+        ax.text(1e3 * limit, 1.01, label, **(above_axes | {"ha": side}))
     ax.set_yticks(range(len(rows)), labels=rows)
-    ax.set(xlim=(0, 1.12e3 * top), ylim=(len(rows) - 0.4, -0.6), xlabel=words("axis_largest"))
+    ax.set(xlim=(0, 1.12e3 * longest), ylim=(len(rows) - 0.4, -0.6), xlabel=words("axis_largest"))
     ax.grid(axis="y", color="0.92")
-    looks = {one: {"color": OWN[i % len(OWN)]["color"]} for i, one in enumerate(variants) if one}
-    if not alone:
+    looks = {variant: {"color": OWN[i % len(OWN)]["color"]} for i, variant in enumerate(variants) if variant}
+    if not of_one_polarity:
         looks |= {words("recorded"): {"color": "0.3"}, words("reversed"): {"color": "0.3", "markerfacecolor": "white"}}
     handles = [Line2D([], [], marker="o", linestyle="", **look) for look in looks.values()]
     if looks:
-        legend_below(figure, handles, list(looks), 5, fontsize=SMALL)
+        legend_below(figure, handles, list(looks), 5, fontsize=LEAST_TYPE)
     small(ax)
     return figure
 
 
-def histories(runs: Sequence[Run], moved: Sequence[Array], limit: float | None, words: Words) -> list[Figure]:
+def histories(runs: Sequence[Run], displacements: Sequence[Array], limit: float | None, words: Words) -> list[Figure]:
     """Displacement over time in small panels, one a record, those with the largest motion where there are many, in
     pictures of one scale, none taller than half a page.
 
     Args:
         runs: the runs.
-        moved: displacement of each at its samples [m], shape (n,).
+        displacements: of each at its samples [m], shape (n,).
         limit: displacement from which nothing comes back, or None [m].
         words: of the report.
     """
     largest = dict[int, float]()
     for run in runs:
         largest[run.record] = max(largest.get(run.record, 0.0), run.largest)
-    records = sorted(sorted(largest, key=lambda record: -largest[record])[:PANELS])
-    starts = range(0, len(records), IN_A_PICTURE)
-    return [_histories(runs, moved, limit, records[i : i + IN_A_PICTURE], words) for i in starts]
+    records = sorted(sorted(largest, key=lambda record: -largest[record])[:MOST_PANELS])
+    starts = range(0, len(records), PANELS_OF_PICTURE)
+    return [_histories(runs, displacements, limit, records[i : i + PANELS_OF_PICTURE], words) for i in starts]
 
 
 def _histories(
-    runs: Sequence[Run], moved: Sequence[Array], limit: float | None, records: Sequence[int], words: Words
+    runs: Sequence[Run], displacements: Sequence[Array], limit: float | None, records: Sequence[int], words: Words
 ) -> Figure:
     """The panels of some records, in the scale of all runs."""
     lines = list(dict.fromkeys(run.line for run in runs))
-    few = len(lines) <= NAMED
+    styles_suffice = len(lines) <= MOST_LINE_STYLES
     columns = min(2, len(records))
-    figure, axes = figure_of_panels(len(records), columns, (WIDE / columns, 1.32 if len(records) > 4 else 1.8))
-    finite = [float(np.abs(path).max()) for run, path in zip(runs, moved, strict=True) if math.isfinite(run.largest)]
+    figure, axes = figure_of_panels(len(records), columns, (PICTURE_WIDTH / columns, 1.32 if len(records) > 4 else 1.8))
+    peaks = [float(np.abs(displacement).max()) for displacement in displacements]
+    finite = [peak for run, peak in zip(runs, peaks, strict=True) if math.isfinite(run.largest)]
     top = 1.1e3 * max([*finite, 1e-6]) if finite else 1.1e3 * (limit or 1.0)
-    if limit is not None and 1e3 * limit < FAR * top:
+    if limit is not None and 1e3 * limit < FARTHEST_LIMIT * top:
         top = max(top, 1.1e3 * limit)
     for ax, record in zip(axes.flat, records, strict=False):
-        for run, path in zip(runs, moved, strict=True):
+        for run, displacement in zip(runs, displacements, strict=True):
             if run.record == record:
-                style = OWN[lines.index(run.line) % len(OWN)] if few else {"color": "0.4"}
-                dash = ":" if run.turned else "-"
-                ax.plot(run.response.t, 1e3 * path, color=style["color"], linestyle=dash, linewidth=0.9)
+                style = OWN[lines.index(run.line) % len(OWN)] if styles_suffice else {"color": "0.4"}
+                line_style = ":" if run.is_reversed else "-"
+                ax.plot(run.response.t, 1e3 * displacement, color=style["color"], linestyle=line_style, linewidth=0.9)
                 name = run.line if run.motion == DASH else run.motion
         if limit is not None:
             ax.axhline(1e3 * limit, color="0.4", linewidth=0.7, linestyle="--")
-        low = min(0.0, *(float(path.min()) for path in moved))
+        low = min(0.0, *(float(displacement.min()) for displacement in displacements))
         ax.set(ylim=(max(-top, 1.05e3 * low - 0.03 * top), top), xlim=(0, None))
-        ax.set_title(name, fontsize=SMALL, pad=2)
+        ax.set_title(name, fontsize=LEAST_TYPE, pad=2)
         small(ax)
     for ax in axes[-1]:
-        ax.set_xlabel(words("axis_t"), fontsize=SMALL)
-    figure.supylabel(words("axis_moved"), fontsize=SMALL)
-    if few:
+        ax.set_xlabel(words("axis_t"), fontsize=LEAST_TYPE)
+    figure.supylabel(words("axis_moved"), fontsize=LEAST_TYPE)
+    if styles_suffice:
         handles = [Line2D([], [], color=OWN[i % len(OWN)]["color"]) for i in range(len(lines))]
-        legend_below(figure, handles, lines, 4, fontsize=SMALL)
+        legend_below(figure, handles, lines, 4, fontsize=LEAST_TYPE)
     return figure
 
 
 def small(ax: Axes) -> None:
     """Type of small panels."""
-    ax.tick_params(labelsize=SMALL)
+    ax.tick_params(labelsize=LEAST_TYPE)
     for axis in (ax.xaxis, ax.yaxis):
-        axis.label.set_fontsize(SMALL)
+        axis.label.set_fontsize(LEAST_TYPE)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from ..quantities import require_kind, require_text, shown
 from ..study.loading.code import OF_MECHANISM, Code
 from ..study.loading.design import Condition, Design
 from ..study.loading.dynamic_check import DynamicCheck
-from ..study.loading.load_check import Borne, LoadCheck, load_check
+from ..study.loading.load_check import LoadCheck, StaticAnswer, load_check
 from ..study.loading.mechanism_check import METHODS, MechanismCheck
 from ..study.loading.mechanism_curve import Checked
 from ..study.loading.verdict import Step, Verdict
@@ -30,7 +31,7 @@ Subject = Checked | AnyCase | Collapse
 """What a check or a run is of."""
 REVERSED = ", reversed"
 """How the name of a reversed motion ends."""
-ABREAST = 4
+COLUMNS_ABREAST = 4
 """Mechanisms whose steps stand beside each other in one table."""
 CONDITION_COLUMNS = ("mechanism", "check", "state", "demand", "capacity", "ratio", "verdict", "clause")
 """Keys of the columns of a table of conditions."""
@@ -55,23 +56,24 @@ class Mechanism(NamedTuple):
     def subjects(self) -> list[Subject]:
         """What its checks are of, where they know it."""
         checked = [self.kinematic.mechanism] if self.kinematic else []
-        shaken = [check.case for check in self.dynamic]
-        return [one for one in (*checked, *shaken, *(check.subject for check in self.loads)) if one is not None]
+        cases = [check.case for check in self.dynamic]
+        loaded = [check.subject for check in self.loads]
+        return [subject for subject in (*checked, *cases, *loaded) if subject is not None]
 
     @property
-    def least(self) -> Verdict:
-        """The condition with the least ratio."""
+    def least_verdict(self) -> Verdict:
+        """The condition with the least ratio of capacity over demand."""
         return min(self.verdicts, key=lambda verdict: verdict.ratio)
 
     @property
-    def holding(self) -> int:
+    def holding_count(self) -> int:
         """How many conditions hold."""
         return sum(verdict.holds for verdict in self.verdicts)
 
     @property
     def kind(self) -> str:
         """The key of the word for its verdict: "holds", "part" where some conditions hold, or "fails"."""
-        return "holds" if self.holding == len(self.verdicts) else "part" if self.holding else "fails"
+        return "holds" if self.holding_count == len(self.verdicts) else "part" if self.holding_count else "fails"
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
@@ -81,12 +83,12 @@ class Mechanism(NamedTuple):
         return (*first, *(verdict for check in others for verdict in check.verdicts))
 
 
-def required_checks(checks: object, alone: str) -> list[Mechanism]:
+def required_checks(checks: object, default_name: str) -> list[Mechanism]:
     """Checks by the names of their mechanisms.
 
     Args:
         checks: one, several of one mechanism, or a mapping of names to such.
-        alone: the name of the mechanism where none is given.
+        default_name: the name of the mechanism where none is given.
 
     Raises:
         TypeError: for anything else.
@@ -94,26 +96,26 @@ def required_checks(checks: object, alone: str) -> list[Mechanism]:
     """
     if checks is None:
         return []
-    found = []
-    for name, given in (checks if isinstance(checks, Mapping) else {alone: checks}).items():
-        several = [given] if isinstance(given, Check | Borne) else given
-        if not isinstance(several, Sequence) or isinstance(several, str):
+    mechanisms = []
+    for name, given in (checks if isinstance(checks, Mapping) else {default_name: checks}).items():
+        of_mechanism = [given] if isinstance(given, Check | StaticAnswer) else given
+        if not isinstance(of_mechanism, Sequence) or isinstance(of_mechanism, str):
             raise TypeError(
                 f"checks = {shown(given)} is no MechanismCheck, DynamicCheck or LoadCheck, nor several of them"
             )
-        if not several:
+        if not of_mechanism:
             raise ValueError(f"checks[{name!r}] is empty; at least one check is needed")
-        several = [load_check(one) if isinstance(one, Borne) else one for one in several]
-        for one in several:
-            require_kind(f"checks[{name!r}]", one, MechanismCheck, DynamicCheck, LoadCheck)
-        kinematic = [one for one in several if isinstance(one, MechanismCheck)]
+        of_mechanism = [load_check(check) if isinstance(check, StaticAnswer) else check for check in of_mechanism]
+        for check in of_mechanism:
+            require_kind(f"checks[{name!r}]", check, MechanismCheck, DynamicCheck, LoadCheck)
+        kinematic = [check for check in of_mechanism if isinstance(check, MechanismCheck)]
         if len(kinematic) > 1:
             raise ValueError(f"checks[{name!r}] has {len(kinematic)} kinematic checks; name each mechanism")
-        dynamic = tuple(one for one in several if isinstance(one, DynamicCheck))
-        loads = tuple(one for one in several if isinstance(one, LoadCheck))
-        called = require_text("a name of checks", name)
-        found.append(Mechanism(called, kinematic[0] if kinematic else None, dynamic, loads))
-    return found
+        dynamic = tuple(check for check in of_mechanism if isinstance(check, DynamicCheck))
+        loads = tuple(check for check in of_mechanism if isinstance(check, LoadCheck))
+        mechanism_name = require_text("a name of checks", name)
+        mechanisms.append(Mechanism(mechanism_name, kinematic[0] if kinematic else None, dynamic, loads))
+    return mechanisms
 
 
 def kind_of(subject: object) -> str:
@@ -139,12 +141,12 @@ def codes_of(mechanisms: Sequence[Mechanism], language: str) -> list[Code]:
     return list(codes.values())
 
 
-def sentences(codes: Sequence[Code], key: str, words: Words) -> list[str]:
+def code_sentences(codes: Sequence[Code], key: str, words: Words) -> list[str]:
     """The text of each code under a key, where it has one."""
     return [text for code in codes if (text := code.text(key, words.language))]
 
 
-def answers(mechanisms: Sequence[Mechanism], others: Sequence[Subject], words: Words) -> list[Markup]:
+def answer_parts(mechanisms: Sequence[Mechanism], others: Sequence[Subject], words: Words) -> list[Markup]:
     """What holds: a sentence for what governs as it is, one for each proposal, and all conditions, the worst first.
 
     Args:
@@ -152,58 +154,66 @@ def answers(mechanisms: Sequence[Mechanism], others: Sequence[Subject], words: W
         others: further cases of the report, beside which a mechanism may be a proposal.
         words: of the report.
     """
-    order = ranked(mechanisms)
-    bases = [*others, *(one for mechanism in mechanisms for one in mechanism.subjects)]
-    proposals = [one for one in order if any(_adds(subject, base) for subject in one.subjects for base in bases)]
-    present = [one for one in order if one not in proposals]
-    leads = [(present[0], "governs" if present[1:] else "alone", bool(proposals))] if present else []
-    lines = [_sentence(one, f"lead_{kind}", words, now) for one, kind, now in leads]
-    lines += [_sentence(one, "lead_proposed", words, False) for one in proposals]
-    lines += [element("p", one) for one in counted(order, words)]
-    return [*lines, verdict_table(order, words)]
+    by_ratio = ranked(mechanisms)
+    subjects = [*others, *(subject for mechanism in mechanisms for subject in mechanism.subjects)]
+    proposals = [mechanism for mechanism in by_ratio if _is_proposal(mechanism, subjects)]
+    present = [mechanism for mechanism in by_ratio if mechanism not in proposals]
+    kind = "governs" if present[1:] else "alone"
+    lines = [_sentence(mechanism, f"lead_{kind}", words, bool(proposals)) for mechanism in present[:1]]
+    lines += [_sentence(mechanism, "lead_proposed", words, False) for mechanism in proposals]
+    lines += [element("p", sentence) for sentence in method_sentences(by_ratio, words)]
+    return [*lines, verdict_table(by_ratio, words)]
 
 
-def counted(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
+def method_sentences(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
     """Which method alone counts in kinematic checks, with the names of the mechanisms where it is not so in all; or of
     one that holds by some of its methods, that these are alternatives."""
-    found = []
+    sentences = []
     for method in METHODS:
-        some = [one for one in mechanisms if one.kinematic and one.kinematic.method == method]
-        names = "; ".join(one.name for one in some) + ": " if len(some) < len(mechanisms) else ""
-        found += [names + words("method_counts", method=words(f"method_{method}"))] * bool(some)
-    return found or [words("methods_alternative")] * any(_holds_by_one(one) for one in mechanisms)
+        names = [one.name for one in mechanisms if one.kinematic and one.kinematic.method == method]
+        start = "; ".join(names) + ": " if len(names) < len(mechanisms) else ""
+        sentences += [start + words("method_counts", method=words(f"method_{method}"))] * bool(names)
+    return sentences or [words("methods_alternative")] * any(_holds_by_one(mechanism) for mechanism in mechanisms)
 
 
 def _holds_by_one(mechanism: Mechanism) -> bool:
     """Whether a limit state holds by one method, and not by another one."""
-    given = [(one.limit_state, one.what.partition(",")[0], one.holds) for one in mechanism.verdicts if one.limit_state]
-    met, refused = ({(state, how) for state, how, holds in given if holds == wanted} for wanted in (True, False))
-    return any(state == other for state, _ in met - refused for other, _ in refused)
+    holds = dict[tuple[str, str], bool]()
+    for verdict in mechanism.verdicts:
+        if verdict.limit_state:
+            key = verdict.limit_state, verdict.what.partition(",")[0]
+            holds[key] = verdict.holds and holds.get(key, True)
+    return any(holds[one] and not holds[other] and one[0] == other[0] for one, other in permutations(holds, 2))
 
 
-def verdict_table(order: Sequence[Mechanism], words: Words) -> Markup:
+def verdict_table(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
     """All conditions of mechanisms."""
     rows = []
-    for mechanism in order:
-        held, count = mechanism.holding, len(mechanism.verdicts)
-        count_text = words("conditions_held", held=held, count=count)
+    for mechanism in mechanisms:
+        count = len(mechanism.verdicts)
+        count_text = words("conditions_held", held=mechanism.holding_count, count=count)
         name = element("td", element("b", mechanism.name), Markup("<br>"), count_text, rowspan=str(count))
         for i, verdict in enumerate(mechanism.verdicts):
-            rows.append([*([name] if i == 0 else []), *_conditions(verdict, words)])
+            rows.append([*([name] if i == 0 else []), *_marked_condition_cells(verdict, words)])
     return table([words(f"verdict_{name}") for name in CONDITION_COLUMNS], rows, right=(3, 4, 5))
 
 
 def ranked(mechanisms: Sequence[Mechanism]) -> list[Mechanism]:
     """Mechanisms, that with the least ratio first."""
-    return sorted(mechanisms, key=lambda one: one.least.ratio)
+    return sorted(mechanisms, key=lambda mechanism: mechanism.least_verdict.ratio)
 
 
-def _adds(subject: Subject, base: Subject) -> bool:
-    """Whether a case is another one of the same wall or masonry with further ties or dampers: a proposal."""
+def _is_proposal(mechanism: Mechanism, subjects: Sequence[Subject]) -> bool:
+    """Whether a case of a mechanism is one of some others with further ties or dampers."""
+    return any(_has_further_links(subject, base) for subject in mechanism.subjects for base in subjects)
+
+
+def _has_further_links(subject: Subject, base: Subject) -> bool:
+    """Whether a case is another one of the same wall or masonry with further ties or dampers."""
     if not (isinstance(subject, AnyCase) and isinstance(base, AnyCase) and subject.built == base.built):
         return False
-    further = tuple(one for one in subject.effects if one not in base.effects)
-    return bool(link_effects(further)) and all(one in subject.effects for one in base.effects)
+    further = tuple(effect for effect in subject.effects if effect not in base.effects)
+    return bool(link_effects(further)) and all(effect in subject.effects for effect in base.effects)
 
 
 class Sentence(NamedTuple):
@@ -228,27 +238,27 @@ def sentence_of(mechanism: Mechanism, key: str, words: Words) -> Sentence:
         key: of the words that it starts with.
         words: of the language.
     """
-    least, verdicts, kind = mechanism.least, mechanism.verdicts, mechanism.kind
-    refused = "; ".join(_of(verdict, words) for verdict in verdicts if not verdict.holds)
-    numbers = {"ratio": words.ratio(least.ratio), "check": _of(least, words)}
-    end = words("lead_ratio", held=mechanism.holding, count=len(verdicts), **numbers)
+    least, verdicts, kind = mechanism.least_verdict, mechanism.verdicts, mechanism.kind
+    refused = "; ".join(_check_and_state(verdict, words) for verdict in verdicts if not verdict.holds)
+    numbers = {"ratio": words.ratio(least.ratio), "check": _check_and_state(least, words)}
+    end = words("lead_ratio", held=mechanism.holding_count, count=len(verdicts), **numbers)
     start = f"{words(key, name=mechanism.name)} {words(f'lead_{kind}', refused=refused)}"
     return Sentence(kind, start, end)
 
 
-def _sentence(mechanism: Mechanism, key: str, words: Words, now: bool) -> Markup:
-    """The sentence on a mechanism as a paragraph; `now` calls it the present state."""
-    now = now and words("as_it_is") not in mechanism.name.casefold()
-    kind, start, end = sentence_of(mechanism, f"{key}_now" if now else key, words)
+def _sentence(mechanism: Mechanism, key: str, words: Words, is_present: bool) -> Markup:
+    """The sentence on a mechanism as a paragraph; `is_present` calls it the present state."""
+    is_present = is_present and words("as_it_is") not in mechanism.name.casefold()
+    kind, start, end = sentence_of(mechanism, f"{key}_now" if is_present else key, words)
     return element("p", element("span", words(kind), kind=kind), " ", element("b", start), f" {end}")
 
 
-def _of(verdict: Verdict, words: Words) -> str:
+def _check_and_state(verdict: Verdict, words: Words) -> str:
     """Which check and limit state a condition is of."""
     return ", ".join(filter(None, (words(verdict.what), verdict.limit_state)))
 
 
-def conditions(verdict: Verdict, words: Words) -> list[str]:
+def condition_cells(verdict: Verdict, words: Words) -> list[str]:
     """Cells of one condition: its check, limit state, demand, capacity, ratio, whether it holds, and its clause."""
 
     def amount(value: float) -> str:
@@ -260,63 +270,63 @@ def conditions(verdict: Verdict, words: Words) -> list[str]:
     return [words(verdict.what), verdict.limit_state or DASH, *numbers, held, verdict.clause or DASH]
 
 
-def _conditions(verdict: Verdict, words: Words) -> list[str]:
+def _marked_condition_cells(verdict: Verdict, words: Words) -> list[str]:
     """The same with what they look like."""
-    what, state, *numbers, held, clause = conditions(verdict, words)
+    what, state, *numbers, held, clause = condition_cells(verdict, words)
     kind = "holds" if verdict.holds else "fails"
     return [what, state, *(element("td", one, kind="right") for one in numbers), element("td", held, kind=kind), clause]
 
 
-def design_rows(found: Design, words: Words) -> list[list[str]]:
+def design_rows(design: Design, words: Words) -> list[list[str]]:
     """Cells of each value that was tried: its least ratio, whether it holds, and the condition that governs it with its
     clause; below their heads."""
     rows = [[words(f"verdict_{key}") for key in ("value", "ratio", "verdict", "check", "clause")]]
-    for trial in found.trials:
+    for trial in design.trials:
         if trial.governs is None:
             rows.append([words.marked(trial.label), DASH, DASH, trial.refused, DASH])
             continue
-        held, clause = words("holds" if trial.holds else "fails"), trial.governs.verdict.clause or DASH
+        verdict, clause = words("holds" if trial.holds else "fails"), trial.governs.verdict.clause or DASH
         rows.append(
-            [words.marked(trial.label), words.ratio(trial.ratio), held, condition(trial.governs, words), clause]
+            [words.marked(trial.label), words.ratio(trial.ratio), verdict, condition_text(trial.governs, words), clause]
         )
     return rows
 
 
-def design_results(found: Design, words: Words) -> list[Markup]:
+def design_results(design: Design, words: Words) -> list[Markup]:
     """Each value that was tried with what governs it, and the result in a sentence."""
-    heads, *cells = design_rows(found, words)
+    heads, *cells = design_rows(design, words)
     rows = list[list[str]]()
-    for trial, (label, ratio, held, *rest) in zip(found.trials, cells, strict=True):
-        verdict = held if trial.governs is None else element("td", held, kind="holds" if trial.holds else "fails")
-        rows.append([element("td", label, kind="short"), ratio, verdict, *rest])
-    made = [table(heads, rows, right=(1,)), element("p", design_sentence(found, words))]
-    if found.chosen is None:
-        return made
-    named = {name or words.marked(found.chosen.label): one for name, one in found.chosen.checks.items()}
-    proposed = element("p", words("proposed", name=words.marked(found.chosen.label)), kind="head")
-    return [*made, proposed, verdict_table(required_checks(named, ""), words)]
+    for trial, (label, ratio, holds, *governing_cells) in zip(design.trials, cells, strict=True):
+        verdict = holds if trial.governs is None else element("td", holds, kind="holds" if trial.holds else "fails")
+        rows.append([element("td", label, kind="short"), ratio, verdict, *governing_cells])
+    parts = [table(heads, rows, right=(1,)), element("p", design_sentence(design, words))]
+    if design.chosen is None:
+        return parts
+    checks = {name or words.marked(design.chosen.label): check for name, check in design.chosen.checks.items()}
+    proposed = element("p", words("proposed", name=words.marked(design.chosen.label)), kind="head")
+    return [*parts, proposed, verdict_table(required_checks(checks, ""), words)]
 
 
-def condition(one: Condition, words: Words) -> str:
+def condition_text(found: Condition, words: Words) -> str:
     """A condition of a design in words, with its mechanism where it has a name."""
-    return ": ".join(filter(None, (one.mechanism, _of(one.verdict, words))))
+    return ": ".join(filter(None, (found.mechanism, _check_and_state(found.verdict, words))))
 
 
-def design_sentence(found: Design, words: Words) -> str:
+def design_sentence(design: Design, words: Words) -> str:
     """The result of a design in one sentence."""
-    count, method = len(found.trials), found.trials[0].method
+    count, method = len(design.trials), design.trials[0].method
     every = words("every_method", method=words(f"method_{method}")) if method else words("every_condition")
-    if len(found.trials) > 1 and found.trials[0].holds:
-        held = sum(trial.holds for trial in found.trials)
-        least = {"name": words.marked(found.least.label), "ratio": words.ratio(found.least.ratio)}
-        return words("design_held", held=held, count=count, **least)
-    if found.chosen is not None:
-        return words("design_chosen", name=words.marked(found.chosen.label), count=count, every=every)
-    best = found.nearest
-    return words("design_none", name=words.marked(best.label), count=count, ratio=words.ratio(best.ratio))
+    if len(design.trials) > 1 and design.trials[0].holds:
+        holding_count = sum(trial.holds for trial in design.trials)
+        least = {"name": words.marked(design.least.label), "ratio": words.ratio(design.least.ratio)}
+        return words("design_held", held=holding_count, count=count, **least)
+    if design.chosen is not None:
+        return words("design_chosen", name=words.marked(design.chosen.label), count=count, every=every)
+    nearest = design.nearest
+    return words("design_none", name=words.marked(nearest.label), count=count, ratio=words.ratio(nearest.ratio))
 
 
-def governing(mechanisms: Sequence[Mechanism], records: Mapping[str, str], words: Words) -> Markup:
+def governing_table(mechanisms: Sequence[Mechanism], records: Mapping[str, str], words: Words) -> Markup:
     """The least ratio of each mechanism with its check, and the record with the largest displacement.
 
     Args:
@@ -325,74 +335,75 @@ def governing(mechanisms: Sequence[Mechanism], records: Mapping[str, str], words
         words: of the report.
     """
     rows = []
-    shaken = any(mechanism.dynamic for mechanism in mechanisms)
+    has_runs = any(mechanism.dynamic for mechanism in mechanisms)
     for mechanism in mechanisms:
-        least = mechanism.least
+        least = mechanism.least_verdict
         runs = [run for check in mechanism.dynamic for run in check.runs]
-        worst = [DASH, DASH]
+        worst_record = [DASH, DASH]
         if runs:
             run = max(runs, key=lambda one: one.d)
             name = run.name.removesuffix(REVERSED)
             d = words("fell") if math.isinf(run.d) else words.quantity(run.d, "m", FOUND)
-            worst = [records.get(name, name) + (f" ({words('reversed')})" if name != run.name else ""), d]
-        rows.append((mechanism.name, words.ratio(least.ratio), _of(least, words), *worst * shaken))
-    columns = ["verdict_mechanism", "least_ratio", "verdict_check", *["worst_record", "run_largest"] * shaken]
+            worst_record = [records.get(name, name) + (f" ({words('reversed')})" if name != run.name else ""), d]
+        least_cells = words.ratio(least.ratio), _check_and_state(least, words)
+        rows.append((mechanism.name, *least_cells, *worst_record * has_runs))
+    columns = ["verdict_mechanism", "least_ratio", "verdict_check", *["worst_record", "run_largest"] * has_runs]
     return table([words(name) for name in columns], rows, right=(1, 4))
 
 
-def limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
+def kinematic_limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]:
     """What the kinematic checks do not cover."""
-    codes = codes_of([one._replace(dynamic=()) for one in mechanisms], words.language)
-    found = sentences(codes, "limit_seat", words)
+    codes = codes_of([mechanism._replace(dynamic=()) for mechanism in mechanisms], words.language)
+    sentences = code_sentences(codes, "limit_seat", words)
     for name, check, *_ in mechanisms:
-        if check and (gone := [state for state in check.states if check.broken_before(state)]):
-            found.append(words("limit_broken", name=name, states=", ".join(gone)))
-    return found
+        if check and (broken_states := [state for state in check.states if check.broken_before(state)]):
+            sentences.append(words("limit_broken", name=name, states=", ".join(broken_states)))
+    return sentences
 
 
 def kinematic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The steps of the kinematic checks, a column a mechanism."""
-    given = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
-    made = []
-    for code in dict.fromkeys(check.code.name for _, check in given):
-        own = [(name, check) for name, check in given if check.code.name == code]
-        for some in (own[start : start + ABREAST] for start in range(0, len(own), ABREAST)):
-            checks = [check for _, check in some]
-            rows = [_step(step, checks, words) for step in _all_steps(checks)]
+    checks_by_name = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
+    tables = []
+    for code in dict.fromkeys(check.code.name for _, check in checks_by_name):
+        of_code = [(name, check) for name, check in checks_by_name if check.code.name == code]
+        for abreast in (of_code[start : start + COLUMNS_ABREAST] for start in range(0, len(of_code), COLUMNS_ABREAST)):
+            checks = [check for _, check in abreast]
+            rows = [_step_row(step, checks, words) for step in _merged_steps(checks)]
             if any(check.moving for check in checks):
                 rows.insert(0, [words("in_moving"), "", *(words.named(check.moving) or DASH for check in checks), DASH])
-            heads = [words("step"), words("formula"), *(name for name, _ in some), words("verdict_clause")]
-            made.append(table(heads, rows, right=range(2, 2 + len(some))))
-    return made
+            heads = [words("step"), words("formula"), *(name for name, _ in abreast), words("verdict_clause")]
+            tables.append(table(heads, rows, right=range(2, 2 + len(abreast))))
+    return tables
 
 
-def _all_steps(checks: Sequence[MechanismCheck]) -> list[Step]:
+def _merged_steps(checks: Sequence[MechanismCheck]) -> list[Step]:
     """The steps of several checks, each once, those of the mechanism in the order of a check: one of a limit state that
     the first has not follows the one that stands before it."""
     merged: list[Step] = []
     for check in checks:
-        at = 0
+        position = 0
         for step in check.steps:
-            same = [i for i, one in enumerate(merged) if (one.key, one.of) == (step.key, step.of)]
-            if not same:
-                merged.insert(at, step)
-            at = 1 + (same[0] if same else at)
+            places = [i for i, other in enumerate(merged) if (other.key, other.of) == (step.key, step.of)]
+            if not places:
+                merged.insert(position, step)
+            position = 1 + (places[0] if places else position)
     order = {key: i for i, key in enumerate(OF_MECHANISM)}
     return sorted(merged, key=lambda step: order.get(step.key, len(order)))
 
 
-def _step(step: Step, checks: Sequence[MechanismCheck], words: Words) -> list[str]:
+def _step_row(step: Step, checks: Sequence[MechanismCheck], words: Words) -> list[str]:
     """A row: what it is, its formula, its value in each check, and its clause."""
-    code, of = checks[0].code, effect_name(step.of, words)
-    shape = code.formula(step.key, step.of, lambda number: words.number(number, GIVEN))
+    code, effect = checks[0].code, effect_name(step.of, words)
+    formula_text = code.formula(step.key, step.of, lambda number: words.number(number, GIVEN))
     cells = []
     for check in checks:
-        found = [one for one in check.steps if (one.key, one.of) == (step.key, step.of)]
-        cells.append(_value(found[0], check, words) if found else DASH)
-    return [code.step(step.key, of).text[words.language], formula(shape), *cells, step.clause or DASH]
+        same_steps = [other for other in check.steps if (other.key, other.of) == (step.key, step.of)]
+        cells.append(_value_cell(same_steps[0], check, words) if same_steps else DASH)
+    return [code.step(step.key, effect).text[words.language], formula(formula_text), *cells, step.clause or DASH]
 
 
-def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
+def _value_cell(step: Step, check: MechanismCheck, words: Words) -> Markup:
     """The cell of a value; the colour of a ratio shows whether it holds, if none below takes its place."""
     if not step.key.endswith("ratio"):
         return element("td", words.quantity(step.value, step.unit, FOUND), kind="right")
@@ -405,24 +416,24 @@ def _value(step: Step, check: MechanismCheck, words: Words) -> Markup:
 
 def effect_label(name: str, effect: Effect, words: Words) -> str:
     """The name of an effect in a report: its own, or that of what several effects stand for."""
-    whole = effect.report_item
-    return effect_name(name, words) if whole is None or whole is effect else words(f"effect_{whole.label}")
+    item = effect.report_item
+    return effect_name(name, words) if item is None or item is effect else words(f"effect_{item.label}")
 
 
 def dynamic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The conditions of the checks by dynamic runs, a column a check."""
-    given = [(mechanism.name, check) for mechanism in mechanisms for check in mechanism.dynamic]
-    made = []
-    for start in range(0, len(given), ABREAST):
-        columns = [dynamic_found(check, words) for _, check in given[start : start + ABREAST]]
+    named_checks = [(mechanism.name, check) for mechanism in mechanisms for check in mechanism.dynamic]
+    tables = []
+    for start in range(0, len(named_checks), COLUMNS_ABREAST):
+        columns = [dynamic_results(check, words) for _, check in named_checks[start : start + COLUMNS_ABREAST]]
         keys = [key for key in columns[0] if any(column[key] != DASH for column in columns)]
         rows = [[words(f"dynamic_{key}"), *(column[key] for column in columns)] for key in keys]
-        heads = [words("step"), *(name for name, _ in given[start : start + ABREAST])]
-        made.append(table(heads, rows))
-    return made
+        heads = [words("step"), *(name for name, _ in named_checks[start : start + COLUMNS_ABREAST])]
+        tables.append(table(heads, rows))
+    return tables
 
 
-def dynamic_found(check: DynamicCheck, words: Words) -> dict[str, str]:
+def dynamic_results(check: DynamicCheck, words: Words) -> dict[str, str]:
     """What a check by dynamic runs found, by its key."""
 
     def length(d: float) -> str:
@@ -430,9 +441,9 @@ def dynamic_found(check: DynamicCheck, words: Words) -> dict[str, str]:
 
     e = DASH
     if check.restitution:
-        low, middle, high = (words.number(one, FOUND) for one in np.percentile(check.restitution, [5, 50, 95]))
+        low, middle, high = (words.number(value, FOUND) for value in np.percentile(check.restitution, [5, 50, 95]))
         e = words("restitution_found", middle=middle, low=low, high=high, count=len(check.restitution))
-    way = "; ".join(words.number(part + 0.0) for part in check.way)
+    direction = "; ".join(words.number(part + 0.0) for part in check.way)
     return {
         "state": check.limit_state,
         "runs": words("runs_and_records", runs=len(check.runs), records=check.records),
@@ -442,6 +453,6 @@ def dynamic_found(check: DynamicCheck, words: Words) -> dict[str, str]:
         "mean": length(check.mean),
         "capacity": words("share_of", d=length(check.capacity), share=words.number(check.share)),
         "restitution": e,
-        "judged": words("centroid_along", names=words.named(check.moving), way=way) if check.moving else DASH,
+        "judged": words("centroid_along", names=words.named(check.moving), way=direction) if check.moving else DASH,
         "lacks": "; ".join(check.lacking_in(words.language)) or words("nothing"),
     }

@@ -9,7 +9,7 @@ import pytest
 
 import mjrock as mr
 from mjrock.reporting.markup import picture
-from mjrock.reporting.pictures import borne_drawn, wall_drawn
+from mjrock.reporting.pictures import static_answer_figure, wall_drawing
 from mjrock.reporting.texts import DASH, Words
 
 SLV = mr.code_spectrum("NTC 2018", ag=2.2345, F0=2.4567, Tc=0.3456, soil="C", topography="T2")
@@ -234,7 +234,7 @@ def test_an_italian_report_of_blocks_names_them_in_italian(tmp_path):
     assert "e altri 3" in text
     assert "and 3 more" not in text
     assert re.search(r"baricentro di block_0, .* e altri 3, lungo \(1; 0\)", text)
-    figure = borne_drawn(curve.start, Words("it"))
+    figure = static_answer_figure(curve.start, Words("it"))
     picture(figure, "limite", Words("it"))
     forces = curve.start.forces
     largest = Words("it").quantity(float(np.hypot(forces.normal, forces.shear).max()), "N", 3)
@@ -256,7 +256,7 @@ def test_the_linear_ratio_of_a_free_element_stands_over_what_it_is_compared_with
 @pytest.mark.parametrize(("length", "one"), [(4.0, True), (12.0, True), (20.0, True), (40.0, False)])
 def test_section_and_elevation_have_one_scale_or_say_that_they_have_not(length, one):
     case = mr.Case(mr.Block.from_size(0.8, 9.0, length), 0.0, 1.0)
-    drawn = wall_drawn(case, Words("en"))
+    drawn = wall_drawing(case, Words("en"))
     drawn.figure.draw_without_rendering()
     scales = [ax.transData.transform([(0.0, 9.0), (1.0, 9.0)]) for ax in drawn.figure.axes]
     left, right = (float(ends[1, 0] - ends[0, 0]) for ends in scales)

@@ -75,7 +75,7 @@ def whole(language):
     case = mr.Case(WALL, 0.0, 2.5, motion=MOTION, effects=EFFECTS)
     fit = mr.fit_fragility([1.0, 2.0, 3.0, 4.0, 5.0], [False, True, False, True, True])
     with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
-        patch.setattr(markup, "DOTS", 170)  # as users have them
+        patch.setattr(markup, "DOTS_PER_INCH", 170)  # as users have them
         path = mr.report(
             case,
             variants(),

@@ -154,7 +154,7 @@ def test_responses_of_no_mechanism_are_refused(tmp_path):
     site = mr.code_spectrum("EC8 type 1", ag=1.0, soil="A")
     low, other = (mr.Case(mr.Block.from_size(0.4, high), 0.01, 0.1) for high in (2.0, 3.0))
     runs = {"low": mr.solve_analytical(other, mr.Restitution.from_geometry(other.wall))}
-    with pytest.raises(ValueError, match=r"responses\['low'\]\[0\] is of .* and the case of"):
+    with pytest.raises(ValueError, match=r"\['low'\]\[0\] is of .* and the case and the checked mechanisms of"):
         mr.report(low, runs, tmp_path / "a.html", checks={"low": mr.mechanism_check(low, site)})
 
 

@@ -12,7 +12,7 @@ from trees import nodes
 
 import mjrock as mr
 from mjrock.reporting import page
-from mjrock.reporting.pictures import Point, _write_beside, design_drawn, wall_drawn
+from mjrock.reporting.pictures import Point, _write_beside, design_figure, wall_drawing
 from mjrock.reporting.texts import Words, drawn_patterns, texts
 
 DRAWING = ("bodies", "forces", "histories", "masonry", "solids", "studies", "wall")
@@ -96,9 +96,9 @@ def figures(tmp_path_factory):
     """The texts of all pictures of an Italian report with each kind of picture."""
     found, drawn = [], page.picture
 
-    def kept(figure, caption, words, *, own=False):
-        found.append((figure, own))
-        return drawn(figure, caption, words, own=own)
+    def kept(figure, caption, words, *, of_user=False):
+        found.append((figure, of_user))
+        return drawn(figure, caption, words, of_user=of_user)
 
     record = mr.GroundMotion.synthetic(3.0, 1.0, seed=1)
     far = mr.Masonry([
@@ -148,7 +148,7 @@ def test_a_picture_of_the_user_is_drawn_in_italian_and_left_as_it_was(figures):
         seen.append(mine.axes[0].get_xlabel()),
         Figure.savefig(mine, *given, **options),
     )
-    page.picture(mine, "", ITALIAN, own=True)
+    page.picture(mine, "", ITALIAN, of_user=True)
     assert seen == [r"rotazione $\theta$ [rad]"]
 
 
@@ -182,7 +182,7 @@ def test_no_name_of_a_sketch_lies_on_another(thickness, height, length, language
     heights = [height * share for share in (0.33, 0.66, 1.0)]
     effects = [mr.Tie(z, 1e7) for z in heights] + [mr.AddedMass(500.0, z) for z in heights] + [mr.Load(9e3, height)]
     case = mr.Case(mr.Block.from_size(thickness, height, length), 0.0, 1.0, effects=effects)
-    drawn = wall_drawn(case, Words(language))
+    drawn = wall_drawing(case, Words(language))
     assert overlapping(drawn.figure) == []
     left, right = drawn.figure.axes
     ends = [text.get_window_extent().x1 for text in left.texts]
@@ -203,7 +203,7 @@ def test_names_of_points_that_are_near_do_not_lie_on_each_other():
 def test_a_design_is_drawn_with_its_conditions_in_italian():
     site = mr.code_spectrum("NTC 2018", ag=2.0, F0=2.4, Tc=0.33, soil="C")
     found = mr.design(lambda t: {"sopra": mr.Case(mr.Block.from_size(t, 4.0), 0.0, 1.0)}, [0.5, 0.8], site)
-    (ax,) = design_drawn(found, ITALIAN).axes
+    (ax,) = design_figure(found, ITALIAN).axes
     named = [text.get_text() for text in ax.get_legend().get_texts()]
     assert named[0] == "sopra: cinematica lineare, SLV"
     assert len(named) == 3

@@ -126,6 +126,6 @@ def test_a_report_of_an_axle_has_the_fill_and_the_axle_once_each_and_on_its_firs
     assert text.count("axle, growing") == 1
     for number in ("1.25 m", "1777 kg/m³", "31 kN", "x = 2.625 m", "0.3 m wide", "coefficient 2.5"):
         assert number in text
-    drawn = content_of(case).at_rest(Words("en"), [found])[0].axes[0]
+    drawn = content_of(case).rest_drawing(Words("en"), [found])[0].axes[0]
     assert [note.get_text() for note in drawn.texts] == ["31 kN"]
     assert len(mr.report(case, (), tmp_path / "b.html", checks={"axle": found}, language="it").read_bytes()) > 1000

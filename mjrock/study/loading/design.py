@@ -14,7 +14,7 @@ from ...quantities import OneOf, brief, is_iterable, listed, ratio_text, require
 from .code import USUAL_CODE
 from .demand import Demand, required_demands
 from .dynamic_check import DynamicCheck
-from .load_check import Borne, LoadCheck, load_check
+from .load_check import LoadCheck, StaticAnswer, load_check
 from .mechanism_check import METHODS as KINEMATIC
 from .mechanism_check import MechanismCheck, mechanism_check
 from .mechanism_curve import Checked
@@ -25,7 +25,7 @@ METHODS = *KINEMATIC, "dynamic"
 ROUNDED = 1e-9
 """Ratios that are alike, over their size [-]."""
 Check = MechanismCheck | DynamicCheck | LoadCheck
-Built = Checked | Borne | Check
+Built = Checked | StaticAnswer | Check
 """What is built with a value: a mechanism, what is borne, or a check of one."""
 
 
@@ -247,8 +247,8 @@ def _checked(value: object, built: Any, demand: Any, options: Mapping[str, Any])
     name = f"build({label_of(value)})"
     if built is None:
         raise TypeError(f"{name} is None; build has to return a mechanism, what bears a load, or a check")
-    if isinstance(demand, int | float) or (demand is None and isinstance(built, Borne)):
-        if not isinstance(built, Borne):
+    if isinstance(demand, int | float) or (demand is None and isinstance(built, StaticAnswer)):
+        if not isinstance(built, StaticAnswer):
             raise TypeError(
                 f"demand = {demand:g} is a factor on loads, an acceleration over g or a force, and {name} = "
                 f"{brief(built)} bears none yet: let build return its collapse_multiplier, limit_curve, push or "

@@ -16,7 +16,7 @@ from .push import Push
 from .pushover import PushoverCurve
 from .verdict import Verdict, verdicts_of
 
-Borne = Collapse | LimitCurve | Push | PushoverCurve
+StaticAnswer = Collapse | LimitCurve | Push | PushoverCurve
 """What has a load that is borne."""
 WHAT = {
     Collapse: "limit analysis",
@@ -42,7 +42,7 @@ class LoadCheck:
         demand: in its unit: a factor on the loads or an acceleration over g [-], or the force of an actuator [N].
     """
 
-    result: Borne
+    result: StaticAnswer
     demand: float
 
     @property
@@ -83,7 +83,7 @@ class LoadCheck:
         return f"<LoadCheck {one.label}: {self.capacity:.4g} for {self.demand:.4g}{' N' * bool(self.unit)}, {one.what}>"
 
 
-def load_check(result: Borne, demand: float | None = None) -> LoadCheck:
+def load_check(result: StaticAnswer, demand: float | None = None) -> LoadCheck:
     """The verdict of limit analysis, of a slow push or of a push-over: what is borne, over what is demanded.
 
     Args:
