@@ -8,6 +8,7 @@ import warnings
 import mujoco
 import numpy as np
 import pytest
+from everyday import among
 from pairs import BALL, FLOOR, scene, since
 
 import mjrock as mr
@@ -57,7 +58,7 @@ def test_a_single_body_is_content_with_few_iterations():
 
 
 @since(4, 0)
-@pytest.mark.parametrize("solver", ["PGS", "CG"])
+@pytest.mark.parametrize("solver", among(["PGS", "CG"], "CG"))
 def test_a_solver_that_does_not_converge_is_given_a_smaller_impratio_and_creeps_as_said(solver):
     """On a slope of 10 degrees the lowest joint holds g sin(a) of five boxes, and its points have the mass of one."""
     with pytest.warns(

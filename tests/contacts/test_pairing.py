@@ -6,15 +6,14 @@ import warnings
 import mujoco
 import numpy as np
 import pytest
+from everyday import crossed
 from pairs import BALL, BOX, FLOOR, ON_A_PLANE, SCENES, TWO_BALLS, made_for, rebound, scene
 
 import mjrock as mr
 from mjrock.contacts.rebound import rebound_restitution
 
 
-@pytest.mark.parametrize("friction", [None, 0.0])
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("e", [0.05, 0.2, 0.5, 0.8, 0.95, 1.0])
+@pytest.mark.parametrize(("friction", "name", "e"), crossed([None, 0.0], SCENES, [0.05, 0.2, 0.5, 0.8, 0.95, 1.0]))
 def test_the_restitution_that_was_asked_for(name, e, friction):
     """The effective mass, W of two bodies, the row and, with friction, the elliptic cone."""
     text, geom1, geom2, points, mass = SCENES[name]

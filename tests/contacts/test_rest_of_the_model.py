@@ -6,6 +6,7 @@ import warnings
 import mujoco
 import numpy as np
 import pytest
+from everyday import crossed
 from pairs import BALL, FLAT_BOX, FLOOR, ON_A_PLANE, scene
 
 import mjrock as mr
@@ -119,9 +120,10 @@ def test_the_elliptic_cone_is_told_to_others_or_kept_from_them():
     assert depths[2] / depths[0] == pytest.approx(1, abs=0.05)
 
 
-@pytest.mark.parametrize("solimp", ["0.9 0.9 .001", "0.2 0.2 .001", "0.9 0.95 .001"])
-@pytest.mark.parametrize("solref", [".02 1", "-2e4 -50"])
-@pytest.mark.parametrize("mu", [0.3, 0.7, 1.4])
+@pytest.mark.parametrize(
+    ("solimp", "solref", "mu"),
+    crossed(["0.9 0.9 .001", "0.2 0.2 .001", "0.9 0.95 .001"], [".02 1", "-2e4 -50"], [0.3, 0.7, 1.4]),
+)
 def test_a_pair_of_the_model_is_kept(mu, solref, solimp):
     """k, c and the inertia of its row, exactly where d does not grow."""
     pair = f'<pair geom1="crate" geom2="floor" friction="{mu} {mu}" solref="{solref}" solimp="{solimp}"/>'

@@ -7,6 +7,7 @@ import warnings
 import mujoco
 import numpy as np
 import pytest
+from everyday import crossed
 from pairs import BALL, FLOOR, scene, since
 
 import mjrock as mr
@@ -76,8 +77,7 @@ def test_a_biped_that_lands_with_what_is_named_gains_no_energy():
     assert gained[1] > 100.0
 
 
-@pytest.mark.parametrize("solver", ["PGS", "CG"])
-@pytest.mark.parametrize("gap", [0.0, 0.05])
+@pytest.mark.parametrize(("solver", "gap"), crossed(["PGS", "CG"], [0.0, 0.05]))
 def test_solvers_that_do_not_converge_are_named_at_once(solver, gap):
     """Boxes that are dropped onto each other fall apart with them, with MuJoCo's own 100 iterations."""
     spec, names = dropped(solver, gap), ["floor", "box0", "box1", "box2"]

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from everyday import crossed
 from scipy.integrate import solve_ivp
 
 from mjrock.contacts.rebound import (
@@ -35,9 +36,9 @@ def integrated(xi, pull, share=1.0):
     return math.sqrt(max(climbs, 0.0)) if solved.y[1, -1] < 0 else 0.0, solved.t[-1]
 
 
-@pytest.mark.parametrize("share", [1.0, 0.09])
-@pytest.mark.parametrize("pull", [0.0, 0.054, 0.5, 3.0])
-@pytest.mark.parametrize("xi", [0.0, 0.3, 0.497, 0.99, 1.0, 1.5])
+@pytest.mark.parametrize(
+    ("share", "pull", "xi"), crossed([1.0, 0.09], [0.0, 0.054, 0.5, 3.0], [0.0, 0.3, 0.497, 0.99, 1.0, 1.5])
+)
 def test_it_solves_the_equation(xi, pull, share):
     e, duration = integrated(xi, pull, share)
     rebound = falling_rebound(xi, pull, share)
@@ -80,8 +81,7 @@ def test_what_cannot_be_is_refused(call, complaint):
         call()
 
 
-@pytest.mark.parametrize("xi", [0.0, 0.1, 0.7, 1.0, 3.0])
-@pytest.mark.parametrize("pull", [0.0, 0.05, 2.0])
+@pytest.mark.parametrize(("xi", "pull"), crossed([0.0, 0.1, 0.7, 1.0, 3.0], [0.0, 0.05, 2.0]))
 def test_how_deep_a_blow_goes(xi, pull):
     """Beside an integration of x'' = pull - x - 2 xi x', and the closed form without weight."""
     solved = solve_ivp(

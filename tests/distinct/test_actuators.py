@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from driven import WEIGHT, B, H, panel
+from everyday import among
 
 import mjrock as mr
 from mjrock.result.bodies import BodyMotion
@@ -47,7 +48,7 @@ def test_a_panel_pushed_at_its_top_has_the_force_of_a_rigid_block_down_to_overtu
     assert force[40:50].max() == pytest.approx(B / (2 * H), rel=0.01)
 
 
-@pytest.mark.parametrize("k_s", [None, 1e10])
+@pytest.mark.parametrize("k_s", among([None, 1e10], None))
 def test_a_panel_pushed_to_and_fro_loses_friction_times_path(k_s):
     history = ([0.0, 1.0, 3.0, 5.0], [0.0, 0.05, -0.05, 0.05])
     jack = actuator(-B, 0.1, history)

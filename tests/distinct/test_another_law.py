@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 from by_hand import alone, system
+from everyday import crossed
 
 from mjrock.distinct import loop
 from mjrock.distinct.contacts import touches
@@ -73,10 +74,10 @@ def unpaid(samples):
     return np.abs(whole - whole[0]).max() / np.ptp(energy["kinetic"])
 
 
-@BOTH
-@pytest.mark.parametrize(("c", "k_s"), [(0.0, math.inf), (60.0, math.inf), (60.0, 2e4)])
-def test_the_ledger_of_a_block_that_lands_closes(stiffening, d, c, k_s):
+@pytest.mark.parametrize(("d", "damping"), crossed([2, 3], [(0.0, math.inf), (60.0, 2e4), (60.0, math.inf)]))
+def test_the_ledger_of_a_block_that_lands_closes(stiffening, d, damping):
     """The mean of two forces does the work of a curved spring but for the square of the step, at touches too."""
+    c, k_s = damping
     shares = [unpaid(landing(d, h, c, k_s=k_s)[0]) for h in (2e-3, 1e-3, 5e-4)]
     assert shares[-1] < 1e-3
     assert shares[0] > 2.5 * shares[1] > 6 * shares[2]

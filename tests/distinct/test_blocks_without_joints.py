@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from everyday import among, crossed
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
@@ -29,9 +30,7 @@ def upright(run, block):
     return run.pose[:, block, 2 if run.case.masonry.in_space else 1]
 
 
-@pytest.mark.parametrize("k_s", [None, 4e7])
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("size", [(0.2, 0.3), (0.3, 0.1)])
+@pytest.mark.parametrize(("k_s", "in_space", "size"), crossed([None, 4e7], [False, True], [(0.2, 0.3), (0.3, 0.1)]))
 def test_a_box_that_is_dropped_on_a_table_sinks_as_deep_as_on_a_joint(size, in_space, k_s):
     """By m g over k_n times its face, whether this is its largest face or not."""
     width, height = size
@@ -44,8 +43,7 @@ def test_a_box_that_is_dropped_on_a_table_sinks_as_deep_as_on_a_joint(size, in_s
     assert run.stats["overlap"] < 0.01
 
 
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("k_s", [None, 4e7])
+@pytest.mark.parametrize(("in_space", "k_s"), crossed([False, True], [None, 4e7]))
 def test_boxes_that_fall_on_each_other_come_to_rest(in_space, k_s):
     """Two of a heap that is poured, with rigid friction in the plane and in space, and on springs."""
     blocks = [GROUND, STANDS, box(0.0, 0.3, 0.3, 0.6, name="A"), box(0.03, 0.33, 0.8, 1.1, name="B")]
@@ -85,7 +83,7 @@ def test_two_blocks_that_come_from_afar_meet_on_time():
     assert run.velocity[-1, 1, 0] < 0 < run.velocity[-1, 2, 0]
 
 
-@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("in_space", among([False, True], True))
 def test_rigid_friction_that_a_run_has_found_carries_on(in_space):
     """A run that carries on has room for the lines that the run before it has found, and ends where one run does."""
     blocks = [GROUND, STANDS, *(box(0.02 * i, 0.3 + 0.02 * i, 0.1 + 0.35 * i, 0.4 + 0.35 * i) for i in range(4))]

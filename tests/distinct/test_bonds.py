@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bonded import AREA, K_N, K_S, MORTAR, Led, joint
+from everyday import among, crossed, slow
 from scipy.integrate import solve_ivp
 
 import mjrock as mr
@@ -61,8 +62,7 @@ def test_a_brittle_joint_breaks_at_once_and_takes_what_its_spring_held():
     assert one.taken[0] == pytest.approx(0.5 * brittle.tension * PEAK, rel=2e-3)
 
 
-@pytest.mark.parametrize("pressure", [0.0, 0.3e6, 1.2e6])
-@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize(("pressure", "place"), crossed([0.0, 0.3e6, 1.2e6], PLACES))
 def test_a_joint_that_is_sheared_holds_cohesion_and_friction_and_takes_its_fracture_energy(place, pressure):
     one, slip = led(**place), np.append(softening(5e-3, 3000), 5e-3)
     one.along(path_of(one, 0.0, np.linspace(0, -pressure / K_N, 5)))
@@ -77,8 +77,7 @@ def test_a_joint_that_is_sheared_holds_cohesion_and_friction_and_takes_its_fract
     assert (tension, slid, crushed) == pytest.approx((0.0, MORTAR.slip_energy, 0.0), rel=1e-3, abs=1e-9)
 
 
-@pytest.mark.parametrize("pressure", [0.3e6, 1.2e6])
-@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize(("pressure", "place"), crossed([0.3e6, 1.2e6], PLACES))
 def test_friction_falls_to_a_residual_with_the_bond(place, pressure):
     """c e + (mu_r + (mu - mu_r) e) sigma with e = exp(-(c / G_II) s), from mu = 0.75 to mu_r = 0.5."""
     bond = replace(MORTAR, residual_friction=0.5)
@@ -139,7 +138,7 @@ def combined(slip, opening, start):
     return share, MORTAR.tension * left, MORTAR.cohesion * left
 
 
-@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("place", among(PLACES, PLACES[1], PLACES[2]))
 def test_opening_and_slip_together_follow_the_integrated_law_to_first_order_of_the_step(place):
     opening = 2e-4  # both strengths are reached at once
     slip = opening * (MORTAR.cohesion / K_S) / PEAK
@@ -156,7 +155,7 @@ def test_opening_and_slip_together_follow_the_integrated_law_to_first_order_of_t
     assert np.divide(*errors) == pytest.approx(2.0, abs=0.3)
 
 
-@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("place", among(PLACES, PLACES[1], PLACES[2]))
 def test_a_crushed_joint_softens_and_is_unloaded_with_a_gap(place):
     one, first = led(CRUSHED, **place), CRUSHED.crushing / K_N
     closing = np.append(np.linspace(0, first, 21)[1:], first + softening(1e-3, 2000))
@@ -176,7 +175,7 @@ def test_a_crushed_joint_softens_and_is_unloaded_with_a_gap(place):
     assert one.taken[2] == pytest.approx(5e3 * (1 - np.exp(-2.1e3 * gap[-1])), rel=3e-3)
 
 
-@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("place", among(PLACES, PLACES[1], PLACES[2]))
 def test_a_joint_that_hardens_reaches_its_strength_and_takes_its_energy(place):
     """The parabola of Lourenco and Rots up to a plastic closing of 0.09 mm, and softening so that the area is G_c."""
     one = led(HARDENING, **place)
@@ -258,14 +257,9 @@ def wandering(seed, count, *, in_space):
 
 
 @pytest.mark.parametrize(
-    ("place", "count"),
-    [
-        ({}, 3000),
-        pytest.param({}, 10_000, marks=pytest.mark.slow),
-        pytest.param({"space": True}, 10_000, marks=pytest.mark.slow),
-    ],
+    ("place", "count", "seed"),
+    [({}, 3000, 0), *(slow((place, 10_000, seed)) for place in ({}, {"space": True}) for seed in range(3))],
 )
-@pytest.mark.parametrize("seed", range(3))
 def test_random_paths_put_no_energy_in_and_damage_never_heals(place, count, seed):
     one = led(CRUSHED, **place)
     path = wandering(seed, count, in_space="space" in place)

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from everyday import crossed
 
 import mjrock as mr
 from mjrock.distinct.response import require_sound
@@ -64,8 +65,7 @@ def test_friction_of_springs_turns_the_blocks_that_overlap(in_space):
     assert unaccounted(run) < 5e-5
 
 
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("inset", [0.12, 0.3])
+@pytest.mark.parametrize(("in_space", "inset"), crossed([False, True], [0.12, 0.3]))
 def test_a_corner_that_has_come_through_an_edge_keeps_pressing_on_it(in_space, inset):
     """A cube falls on its corner near the end of a table, and is thrown back to where it came from."""
     masonry = cube_beside_a_table(in_space, k_n=1e8, friction=0.0, xi=0.0)
@@ -78,8 +78,7 @@ def test_a_corner_that_has_come_through_an_edge_keeps_pressing_on_it(in_space, i
     assert unaccounted(run) < 1e-5
 
 
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("k_s", [None, 2e5])
+@pytest.mark.parametrize(("in_space", "k_s"), crossed([False, True], [None, 2e5]))
 def test_what_contacts_lose_at_the_end_of_a_face_has_an_account(in_space, k_s):
     """A cube that rocks slides off its table. Its joint is handed over before it comes to the end, and the part of it
     that has left the table leaves what its springs hold: in all no more than they held at most."""
@@ -110,8 +109,7 @@ def test_a_corner_that_slides_off_leaves_what_its_spring_holds(in_space):
     assert unaccounted(run) < 1e-3  # its force changes from one pose to the next
 
 
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("k_s", [None, 1e9])
+@pytest.mark.parametrize(("in_space", "k_s"), crossed([False, True], [None, 1e9]))
 def test_a_support_works_through_friction(in_space, k_s):
     """The ground takes a cube along: what it puts in is the motion of the cube, and what friction takes as it slips."""
     masonry = cube_on_ground(in_space, k_n=1e9, k_s=k_s, friction=0.1, xi=0.3)
@@ -126,9 +124,7 @@ def test_a_support_works_through_friction(in_space, k_s):
     assert unaccounted(run) < 1e-3
 
 
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("sinks", [5.0, 500.0])
-@pytest.mark.parametrize("xi", [0.0, 0.05])
+@pytest.mark.parametrize(("in_space", "sinks", "xi"), crossed([False, True], [5.0, 500.0], [0.0, 0.05]))
 def test_a_support_that_sinks_takes_what_the_springs_hold_and_no_more(in_space, sinks, xi):
     """It is gone within a part of a step, in which the springs at rest do their work on it, or on the dashpots."""
     masonry = cube_on_ground(in_space, k_n=1e9, friction=0.5, xi=xi)
@@ -228,8 +224,7 @@ def test_what_wedged_springs_hold_counts_as_energy_that_there_was(share, fails):
         require_sound(run, 1e-3)
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.3])
-@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize(("friction", "in_space"), crossed([0.0, 0.3], [False, True]))
 def test_a_pier_that_leaves_a_beam_works_through_lines_that_are_handed_over(in_space, friction):
     """The lines of the joint are handed over, and their normals turn where a corner of the beam goes over the end of
     the pier. Work of the step before goes along the normals before, and supports are where they are at the pose. With

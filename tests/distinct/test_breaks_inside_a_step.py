@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from everyday import crossed
 
 import mjrock as mr
 
@@ -32,8 +33,7 @@ def caught(in_space, ultimate):
     return mr.solve_explicit(mr.MasonryCase(masonry, 0.05, velocity=velocity, effects=(tie,)), ledger=True)
 
 
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("ultimate", [0.05, 0.051, 0.052, 0.053])
+@pytest.mark.parametrize(("in_space", "ultimate"), crossed([False, True], [0.05, 0.051, 0.052, 0.053]))
 def test_a_tie_holds_until_it_breaks_and_no_longer(in_space, ultimate):
     """The breaks lie at different places inside their steps."""
     run = caught(in_space, ultimate)

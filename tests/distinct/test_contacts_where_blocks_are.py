@@ -70,7 +70,7 @@ def test_beams_whose_edges_cross_meet_in_one_place():
     np.testing.assert_allclose(np.abs(meeting.normal), [[0, 0, 1]], atol=1e-9)
 
 
-@pytest.mark.parametrize("seed", among(range(40), 0, 17, 33))
+@pytest.mark.parametrize("seed", among(range(40), 17))
 def test_a_drum_that_hops_lands_on_the_drum_or_beside_it(seed):
     """With any yaw, spin and offset. Beyond the width of the joint it used to fall through the drum."""
     rng = np.random.default_rng(seed)
@@ -122,7 +122,7 @@ def test_a_beam_that_is_thrown_over_a_sill_stays_above_it():
     assert run.stats["overlap"] < 0.01
 
 
-@pytest.mark.parametrize("seed", among(range(20), 3, 11))
+@pytest.mark.parametrize("seed", among(range(20), 11))
 def test_random_neighbours_with_a_gap_meet_and_keep_their_momentum(seed):
     """Any gap, size and speed, in space with a spin about the vertical, off the middle of the other."""
     rng = np.random.default_rng(seed)
@@ -138,7 +138,7 @@ def test_random_neighbours_with_a_gap_meet_and_keep_their_momentum(seed):
     np.testing.assert_allclose(momentum, np.tile(momentum[0], (len(momentum), 1)), atol=1e-12 * momentum[0, 0])
 
 
-@pytest.mark.parametrize("seed", among(range(20), 5, 14))
+@pytest.mark.parametrize("seed", among(range(20), 5))
 def test_random_caps_that_hop_stay_out_of_their_pier(seed):
     """With any yaw, spin and offset. A cap lands on its fixed pier, or beside it on the ground."""
     rng = np.random.default_rng(seed)
@@ -151,7 +151,7 @@ def test_random_caps_that_hop_stay_out_of_their_pier(seed):
     assert np.abs(run.energy_residual).max() < 0.01 * run.ledger.kinetic.max()
 
 
-@pytest.mark.parametrize("seed", among(range(20), 2, 9))
+@pytest.mark.parametrize("seed", among(range(20), 2))
 def test_random_beams_that_are_thrown_over_a_sill_stay_out_of_it(seed):
     """Edges of a beam cross those of a sill and of its pier at any angle."""
     rng = np.random.default_rng(seed)
@@ -209,10 +209,10 @@ def test_a_heap_comes_to_rest():
     blocks = [GROUND, *(box(-0.2 + 0.03 * i, 0.2 + 0.03 * i, 0.3 * i, 0.3 + 0.3 * i) for i in range(4))]
     masonry = mr.Masonry(blocks, k_n=1e9, friction=0.6, xi=0.3)
     velocity = [(0.0, 0, 0), (0.5, 1.0, 0.5), (-0.5, 2.0, -1.0), (1.0, 3.0, 2.0)]
-    run = mr.solve_explicit(mr.MasonryCase(masonry, 8.0, velocity=velocity), ledger=True, output_step=0.01)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 6.0, velocity=velocity), ledger=True, output_step=0.01)
     assert run.stats["overlap"] < 0.01
     assert run.ledger.kinetic[-1] < 1e-9
-    assert np.abs(run.pose[-1] - run.pose[600]).max() < 1e-5
+    assert np.abs(run.pose[-1] - run.pose[450]).max() < 1e-5
 
 
 @pytest.mark.filterwarnings("ignore:dashpots, c/k")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from everyday import slow
+from everyday import among, crossed, slow
 from scipy.integrate import solve_ivp
 from scipy.special import ellipj
 from space_blocks import GROUND, about_vertical, angles, block, followed, free_body, steady
@@ -54,7 +54,7 @@ def test_a_body_without_moments_precesses_as_jacobi_found(turned):
     np.testing.assert_allclose(system.bodies[0].momentum, axes @ np.diag(moments) @ axes.T @ axes @ spin, rtol=1e-14)
 
 
-@pytest.mark.parametrize("k_s", [None, 1e9])
+@pytest.mark.parametrize("k_s", among([None, 1e9], None))
 def test_a_block_slides_askew_as_coulomb_has_it(k_s):
     """The ground accelerates along x, and the block moves along y at the start: its path bends."""
     push, friction = 0.42 * G, 0.3
@@ -229,7 +229,7 @@ def bonded(angle=0.0):
     return [GROUND, *about_vertical(blocks, angle)]
 
 
-@pytest.mark.parametrize("k_s", [None, 1e9])
+@pytest.mark.parametrize("k_s", among([None, 1e9], 1e9))
 def test_a_scene_turned_with_its_motion_moves_alike(k_s):
     angle = math.radians(37)
     c, s = math.cos(angle), math.sin(angle)
@@ -259,8 +259,7 @@ def test_masonry_starts_at_rest(k_s):
     assert run.energy[0] == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("plan", [0.0, 37.0])
-@pytest.mark.parametrize("k_s", [None, 1e10])
+@pytest.mark.parametrize(("plan", "k_s"), crossed([0.0, 37.0], [None, 1e10]))
 def test_a_slab_thrown_up_a_steep_slope_stops_where_coulomb_has_it(plan, k_s):
     """v^2 / (2 g (mu cos + sin)) above where it rests, whichever way the slope faces."""
     slope, mu, speed = math.radians(65), 2.5, 1.0

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from everyday import among
+from everyday import among, crossed
 from masonry_blocks import box
 
 import mjrock as mr
@@ -61,15 +61,13 @@ def test_a_cube_that_has_slid_on_its_ground_leans_as_before(in_space, points, sl
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("slide", [0.02, 0.08])
-@pytest.mark.parametrize("points", [2, 5])
+@pytest.mark.parametrize(("slide", "points"), crossed([0.02, 0.08], [2, 5]))
 def test_a_cube_that_has_slid_leans_in_mujoco_by_as_much(points, slide):
     run = mr.simulate(case_of(points, slide, (-5.0, 5.0)), output_step=2e-3)
     assert leaned(run) == pytest.approx(yields(points, SIDE, 0.0), rel=0.02)
 
 
-@pytest.mark.parametrize("points", [2, 5, 9])
-@pytest.mark.parametrize("slide", [0.08, 0.2])
+@pytest.mark.parametrize(("points", "slide"), crossed([2, 5, 9], [0.08, 0.2]))
 def test_a_joint_whose_faces_have_slid_off_each_other_is_as_stiff_as_what_is_left(points, slide):
     """On a block of its own width: bending goes as the third power of what lies over each other."""
     run = mr.solve_explicit(case_of(points, slide, (-0.5, 0.5)), output_step=2e-3)

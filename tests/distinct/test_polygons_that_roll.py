@@ -12,7 +12,7 @@ from wheels import RADIUS, rolling, slope_of, wheel_on
 import mjrock as mr
 from mjrock.distinct.search import contact_search
 
-WHEELS = [(12, 0.5), (24, 0.5), *map(slow, zip(range(5, 25), cycle((0.5, 5.0, 50.0)), strict=False))]
+WHEELS = [(12, 0.5), slow((24, 0.5)), *map(slow, zip(range(5, 25), cycle((0.5, 5.0, 50.0)), strict=False))]
 """Sides of wheels, and how far the ground goes on behind them [m]."""
 
 

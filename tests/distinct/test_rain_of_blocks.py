@@ -1,5 +1,7 @@
 """Blocks of random shapes that fall on each other, of which hardly one has a joint in the drawing: they stay apart."""
 
+import itertools
+
 import numpy as np
 import pytest
 from everyday import among
@@ -62,8 +64,9 @@ def rain(seed, in_space, k_n=K_N):
     return mr.MasonryCase(masonry, 0.6, velocity=np.vstack([0 * rates[:1], rates]), settled=False)
 
 
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("seed", among(SCENES, 0, 1))
+@pytest.mark.parametrize(
+    ("in_space", "seed"), among(list(itertools.product([False, True], SCENES)), (True, 0), (False, 1))
+)
 def test_blocks_that_fall_on_each_other_stay_apart(seed, in_space):
     """Landing at speed v, a block of size s overlaps by v (density / (k_n s))^1/2 of itself, some thousandths."""
     run = mr.solve_explicit(rain(seed, in_space), output_step=5e-3)

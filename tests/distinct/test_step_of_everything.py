@@ -44,7 +44,7 @@ def thrown_at_each_other(xi, faster):
     return (speed[1] - speed[0]) / (2 + faster), blocks[2].mass
 
 
-@pytest.mark.parametrize("xi", among([0.05, 0.1, 0.2, 0.4, 0.8, 1.0, 2.0, 5.0, 20.0], 0.05, 0.4, 20.0))
+@pytest.mark.parametrize("xi", among([0.05, 0.1, 0.2, 0.4, 0.8, 1.0, 2.0, 5.0, 20.0], 0.05, 20.0))
 def test_dashpots_of_pairs(xi):
     """Within 1 % up to a damping ratio of 0.35, and beyond within 0.5 % of the speed, wherever the touch lies."""
     for faster in (0.0, 3e-4, 7e-4):

@@ -1,11 +1,12 @@
 """A touch inside a step: restitution and energy wherever in the step it lies, and when an error ends a run."""
 
+import itertools
 import math
 import re
 
 import numpy as np
 import pytest
-from everyday import slow
+from everyday import among, slow
 from masonry_blocks import GROUND, box
 from scipy.integrate import solve_ivp
 
@@ -57,21 +58,24 @@ def default_step(masonry):
     return bounced(masonry, 1.0, output_step=0.3).stats["timestep"]
 
 
-@pytest.mark.parametrize("in_space", [False, True])
+SCATTER = {
+    0.0: (1e-4, 1e-4),
+    0.05: (3e-3, 1e-3),
+    0.1: (3e-3, 2e-3),
+    0.15: (1e-2, 3e-3),
+    0.2: (1e-2, 3e-3),
+    0.3: (1e-2, 4e-3),
+    0.35: (1e-2, 4e-3),
+}
+"""Largest mean error of |e| and its scatter, by the damping ratio [-]."""
+
+
 @pytest.mark.parametrize(
-    ("xi", "mean", "scatter"),
-    [
-        slow((0.0, 1e-4, 1e-4)),
-        (0.05, 3e-3, 1e-3),
-        slow((0.1, 3e-3, 2e-3)),
-        slow((0.15, 1e-2, 3e-3)),
-        slow((0.2, 1e-2, 3e-3)),
-        (0.3, 1e-2, 4e-3),
-        slow((0.35, 1e-2, 4e-3)),
-    ],
+    ("in_space", "xi"), among(list(itertools.product([False, True], SCATTER)), (False, 0.05), (True, 0.3))
 )
-def test_a_flat_impact_at_the_default_step_is_that_of_exact_integration(in_space, xi, mean, scatter):
+def test_a_flat_impact_at_the_default_step_is_that_of_exact_integration(in_space, xi):
     """Wherever in its step it falls, the energy of the motion upwards is its restitution, and the ledger closes."""
+    mean, scatter = SCATTER[xi]
     masonry, errors = block(in_space, xi), []
     step = default_step(masonry)
     for speed in PHASES:
@@ -98,7 +102,7 @@ def test_very_strong_dashpots_leave_little_of_a_flat_impact_and_of_its_error():
         assert math.sqrt(up / down) == pytest.approx(exact, abs=5e-3)
 
 
-@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("in_space", among([False, True], True))
 def test_dashpots_at_short_steps_are_of_second_order(in_space):
     """They look half a step ahead."""
     masonry, error = block(in_space, 0.3), {}
@@ -141,10 +145,10 @@ def landing(in_space, xi, angle, height, timestep=None):
     ],
 )
 def test_a_corner_impact_at_the_default_step_is_that_of_short_steps(in_space, xi):
-    """The corner leaves the ground again with the speed that it has at steps a hundred times shorter."""
+    """The corner leaves the ground again with the speed that it has at steps some fifty times shorter."""
     spin, up = (4, 2) if in_space else (2, 1)
-    for height in 0.2 + np.linspace(0, 0.02, 5 if in_space else 7):
-        runs = [landing(in_space, xi, 0.25, height, step) for step in (None, 5e-6)]
+    for height in 0.2 + np.linspace(0, 0.02, 4):
+        runs = [landing(in_space, xi, 0.25, height, step) for step in (None, 1e-5)]
         long, short = (run.velocity[-1, 0] for run in runs)
         assert abs(short[spin]) > 0.5
         assert abs(long[spin] - short[spin]) < 0.01 * abs(short[spin])
@@ -191,7 +195,7 @@ def thrown(height, timestep, duration=0.32, spin=(0.0, 0.0, 0.0), output_step=No
 
 @pytest.mark.parametrize("share", [0.4, 0.1])
 def test_a_bounce_keeps_its_energy_wherever_the_touches_lie_in_their_steps(share):
-    steps = share * STABLE * np.linspace(0.8, 1.0, 8)
+    steps = share * STABLE * np.linspace(0.8, 1.0, 5)
     runs = [thrown(0.05 + 0.3 * i * steps[-1] * THROWN, h) for i, h in enumerate(steps)]
     assert runs[-1].stats["share"] == pytest.approx(share)
     assert max(np.ptp(run.energy) / run.energy[0] for run in runs) < 1e-4
@@ -200,7 +204,7 @@ def test_a_bounce_keeps_its_energy_wherever_the_touches_lie_in_their_steps(share
 def test_hops_without_damping_are_accepted_at_any_spacing_of_the_samples():
     for spin in ((0.0, 0.0, 0.0), (0.3, 0.2, 1.0)):
         for spacing in (None, 0.01, 0.3):
-            assert thrown(0.05, 0.4 * STABLE, 1.0, spin, output_step=spacing).stats["share"] == pytest.approx(0.4)
+            assert thrown(0.05, 0.4 * STABLE, 0.7, spin, output_step=spacing).stats["share"] == pytest.approx(0.4)
 
 
 def unstable(monkeypatch, output_step=1e-3, beyond=1.8):

@@ -6,6 +6,7 @@ import re
 import mujoco
 import numpy as np
 import pytest
+from everyday import among
 
 import mjrock as mr
 from scripts.models import make_models
@@ -124,7 +125,7 @@ def names_of(engine):
     return {engine.body(i).name for i in range(engine.nbody)}
 
 
-@pytest.mark.parametrize("model", make_models.MASONRY, ids=lambda m: m.name)
+@pytest.mark.parametrize("model", among(make_models.MASONRY, make_models.MASONRY[0]), ids=lambda m: m.name)
 def test_stock_mujoco_repeats_masonry_and_follows_its_reference(model):
     """Every step of the text is that of `simulate`, and the step of the text costs little accuracy."""
     run = mr.simulate(model.case, timestep=model.timestep)

@@ -6,6 +6,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from everyday import crossed
 
 from mjrock.contacts import contact_for, measure, stiffest_contacts
 
@@ -95,10 +96,9 @@ def found_as_drawn(name):
     return found_of(REQUESTS[name])
 
 
-@pytest.mark.parametrize("name", REQUESTS)
-@pytest.mark.parametrize("how", SAME.values(), ids=SAME)
+@pytest.mark.parametrize(("name", "how"), crossed(list(REQUESTS), list(SAME)))
 def test_a_measured_contact(name, how):
-    np.testing.assert_allclose(found_of(REQUESTS[name], **how), found_as_drawn(name), rtol=2e-4)
+    np.testing.assert_allclose(found_of(REQUESTS[name], **SAME[how]), found_as_drawn(name), rtol=2e-4)
 
 
 @pytest.mark.parametrize("how", SAME.values(), ids=SAME)

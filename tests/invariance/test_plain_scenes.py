@@ -24,8 +24,11 @@ OF_ORDER = {"mirrored", "quarter_turn", "renumbered"}
 ORDERED = 0.1
 """The same where the order of hulls decides normals [-]."""
 HULLS = {"arch", "voronoi"}
-EVERYDAY = 70026, 70044
-SEEDS = 70000, 70001, 70005, 70008, 70011, 70018, 70019, 70021, 70025, 70028, 70033, 70036, 70038, 70046, 70050, 70055
+EVERYDAY = (70026,)
+SEEDS = (
+    *(70000, 70001, 70005, 70008, 70011, 70018, 70019, 70021, 70025, 70028, 70033, 70036, 70038, 70044, 70046, 70050),
+    70055,
+)
 """Of masonry in the plane and in space, of the first sixty scenes from 70000 those that a plain model has."""
 
 

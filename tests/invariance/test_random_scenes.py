@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from everyday import among
 
 from mjrock.problem.masonry.masonry import Masonry
 from tests.invariance.__main__ import table
@@ -50,7 +51,7 @@ def test_a_scene(seed):
     assert not broken(seed)
 
 
-@pytest.mark.parametrize("seed", [50243, 50543, 50803, 50941])
+@pytest.mark.parametrize("seed", among([50243, 50543, 50803, 50941], 50243, 50803))
 def test_rounding_decides_nothing(seed):
     """Joints as drawn, places that a search finds where nothing presses, and a block that falls turned by 45 degrees
     move alike 1000 m away. What is rounded there, 1e-13 m, grows by less than 1e5."""
@@ -86,7 +87,7 @@ def test_no_constant_of_the_steps_in_mujoco_has_a_unit(seed):
         assert INVARIANCES["larger"].run(Trial(draw(seed))) < 1e-6
 
 
-@pytest.mark.parametrize("seed", [50365, 50543, 51423, 51440])
+@pytest.mark.parametrize("seed", among([50365, 50543, 51423, 51440], 50365, 50543))
 def test_prisms_move_as_blocks_of_the_plane(seed):
     """Friction past an end of its face, of a line that leaves its face, and of one that is handed over is that of the
     plane, and so are the points beside each other: an L, a pile, and arches of two points and of four with a jack. The

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from everyday import among, crossed
 from scipy.optimize import Bounds, LinearConstraint, milp
 
 import mjrock as mr
@@ -67,8 +68,7 @@ def state_error(collapse, friction, direction=1, loads=None):
     return max(worst, np.abs(left[list(masonry.free)]).max()) / total, abs(power) / (total * size)
 
 
-@pytest.mark.parametrize("friction", [0.1, 0.2, 0.9])
-@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize(("friction", "direction"), crossed([0.1, 0.2, 0.9], [1, -1]))
 def test_a_block_slides_or_turns_over(friction, direction):
     block = mr.Masonry.stack([mr.Block.from_size(B, H)], k_n=1e9, friction=friction)
     collapse = mr.collapse_multiplier(block, direction, associated=False)
@@ -83,7 +83,7 @@ def test_a_block_slides_or_turns_over(friction, direction):
     assert associated.motion[0, 1] == pytest.approx(min(friction, B / H))  # sliding lifts it
 
 
-@pytest.mark.parametrize("degrees", [0.0, 30.0, 90.0])
+@pytest.mark.parametrize("degrees", among([0.0, 30.0, 90.0], 30.0))
 def test_a_box_in_space_slides_without_rising(degrees):
     box = mr.Masonry.box((0.6, 0.4, 0.5), friction=0.3)
     collapse = mr.collapse_multiplier(box, angle=math.radians(degrees), associated=False)
@@ -159,7 +159,7 @@ def walls(*numbers):
     return [number if number in numbers else pytest.param(number, marks=pytest.mark.slow) for number in study.WALLS]
 
 
-@pytest.mark.parametrize("number", walls(3, 4, 5))
+@pytest.mark.parametrize("number", walls(3))
 def test_walls_of_ferris_and_tin_loi_with_associated_friction(number):
     collapse = mr.collapse_multiplier(study.wall(number))
     assert collapse.multiplier == pytest.approx(study.PUBLISHED[number][0], rel=0.005)

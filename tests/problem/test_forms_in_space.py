@@ -123,10 +123,10 @@ def bounds(masonry):
 
 
 SIZES = [
-    ((2.4, 1.6, 1.2, UNIT), {}),
+    slow(((2.4, 1.6, 1.2, UNIT), {})),
     slow(((7.0, 3.0, 3.0, (1.2, 0.6)), {"thickness": 0.8})),
     slow(((3.1, 1.1, 1.4, (0.4, 0.2)), {"thickness": 0.35})),
-    ((4.0, 1.5, 2.0, (0.5, 0.25)), {"thickness": 0.7, "returns": "left"}),
+    slow(((4.0, 1.5, 2.0, (0.5, 0.25)), {"thickness": 0.7, "returns": "left"})),
     ((4.3, 1.6, 0.0, (0.5, 0.25)), {"thickness": 0.3, "returns": "none"}),
     ((3.3, 1.5, 1.5, (0.5, 0.25)), {"returns": "right"}),
 ]

@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from everyday import among
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -365,7 +366,7 @@ def test_sections_hold_texts_figures_and_tables(tmp_path):
     assert text.index("The dynamic runs") < text.index("Code &lt;SLV") < text.index("Appendix")
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", among(LANGUAGES, "it"))
 def test_masonry_has_blocks_at_rest_and_as_they_end(tmp_path, language):
     masonry = mr.Masonry.stack([mr.Block.from_size(0.5, 0.5)] * 2, k_n=1e8)
     case = mr.MasonryCase(masonry, 1e-3)

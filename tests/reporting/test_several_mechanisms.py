@@ -4,7 +4,7 @@ import re
 import tomllib
 
 import pytest
-from everyday import slow
+from everyday import among, slow
 
 import mjrock as mr
 from mjrock.assessment.assessment import assessment_of
@@ -183,7 +183,7 @@ method = "linear"
 """
 
 
-@pytest.mark.parametrize("language", ["en", "it"])
+@pytest.mark.parametrize("language", among(["en", "it"], "it"))
 def test_a_report_has_the_design_of_its_file(language, tmp_path):
     """Every value with its ratio, the sentence, and all conditions of the value that is chosen."""
     assessment, words = mr.from_toml(text=TIED.format(language=language)), Words(language)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from everyday import crossed
 from masonry_blocks import box
 
 import mjrock as mr
@@ -86,8 +87,7 @@ BLOCK = [box(-5, 5, -1, 0, fixed=True), box(-0.2, 0.2, 0, 0.4)]
 SOLVERS = [mr.simulate, mr.solve_explicit]
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize(("solver", "in_space"), crossed(SOLVERS, [False, True]))
 def test_masonry_that_slides_down(in_space, solver):
     made, down = masonry(SLOPE, in_space, k_n=1e7, friction=0.5), math.radians(-20)
     velocity = in_axes((math.cos(down), math.sin(down), 0.0), in_space)
@@ -98,8 +98,7 @@ def test_masonry_that_slides_down(in_space, solver):
     assert solver(mr.MasonryCase(made, 0.05)).outcome is mr.Outcome.AT_REST
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize(("solver", "in_space"), crossed(SOLVERS, [False, True]))
 def test_masonry_that_falls_freely(in_space, solver):
     """A thrust presses a block on a face, and friction holds it, until the ground all but follows the thrust."""
     made, force = masonry(FACE, in_space, k_n=1e8, friction=0.7), 2 * FACE[1].mass * mr.GRAVITY
@@ -129,8 +128,7 @@ def test_masonry_whose_supports_part():
     assert run.outcome is mr.Outcome.TIME_ENDED
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize(("solver", "in_space"), crossed(SOLVERS, [False, True]))
 def test_masonry_that_rocks_and_overturns(in_space, solver):
     made = masonry(BLOCK, in_space, k_n=1e9, friction=0.7)
     for spin, duration, outcome in (

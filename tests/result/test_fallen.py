@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from everyday import crossed
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
@@ -19,9 +20,7 @@ def drums(in_space):
     return mr.Masonry([GROUND, box(-0.1, 0.1, 0, 0.2), box(-0.1, 0.1, 0.2, 0.4)], k_n=1e8, friction=0.6, xi=0.3)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("duration", [0.2, 1.8])
+@pytest.mark.parametrize(("solver", "in_space", "duration"), crossed(SOLVERS, [False, True], [0.2, 1.8]))
 def test_a_drum_that_hops_has_not_fallen(duration, in_space, solver):
     """Its joint opens by 0.9 of its width. It is at the top as the short run ends, and stands again after the other."""
     upwards = np.zeros((2, 6 if in_space else 3))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy
+from everyday import crossed
 from scipy.sparse import csc_array, csr_array
 
 import mjrock as mr
@@ -43,8 +44,7 @@ def measured(masonry):
     return pose, stands, lowest, scene.highest_frequency
 
 
-@pytest.mark.parametrize("many", [linear.MANY_UNKNOWNS, 0])
-@pytest.mark.parametrize("name", WALLS)
+@pytest.mark.parametrize(("many", "name"), crossed([linear.MANY_UNKNOWNS, 0], WALLS))
 def test_all_ways_agree(name, many, monkeypatch):
     masonry = WALLS[name]()
     full = measured(masonry)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from everyday import among, slow
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
@@ -26,7 +27,7 @@ def test_stiff_arches_that_stand_are_at_rest_and_bear_what_soft_ones_do(thin, co
     np.testing.assert_allclose(stiff, soft, atol=0.02 * soft.max())
 
 
-@pytest.mark.parametrize("seed", [6, 7, 33, 34, 1356])
+@pytest.mark.parametrize("seed", among([6, 7, 33, 34, 1356], 6, 7, 34, 1356))
 def test_random_masonry_that_limit_analysis_holds_is_at_rest(seed):
     answer = rest(seed)
     assert answer is None or not answer.refused
@@ -64,7 +65,7 @@ def reflected(pose):
     return dict(zip(pose, [row * [-1, 1, -1] for row in list(pose.values())[::-1]], strict=True))
 
 
-@pytest.mark.parametrize(("count", "thin"), [(5, 0.11), (7, 0.11), (9, 0.11), (57, 0.1101)])
+@pytest.mark.parametrize(("count", "thin"), [(5, 0.11), slow((7, 0.11)), (9, 0.11), slow((57, 0.1101))])
 def test_a_symmetric_arch_on_four_hinges_leans_to_positive_x(count, thin):
     """Four joints are open in the symmetric pose: nothing but geometry holds it, and it falls to a side. That side does
     not depend on where the arch is drawn, on the order of its blocks, or on which of two mirrored drawings it is."""

@@ -97,7 +97,7 @@ def test_walls_and_masonry_of_many_blocks(tmp_path):
     """The first edge of a block under a half sine, in theory and as a stack of one by explicit steps, is that which a
     search by halving finds."""
     block = mr.Block.from_size(0.5, 2.0)
-    stack = mr.Masonry.stack([block], k_n=1e8, xi=0.02)
+    stack = mr.Masonry.stack([block], k_n=1e7, xi=0.02)
 
     def theory(scale):
         motion = mr.GroundMotion.half_sine(-scale, 0.4)
@@ -109,9 +109,9 @@ def test_walls_and_masonry_of_many_blocks(tmp_path):
         return mr.MasonryAnalysis(mr.MasonryCase(stack, 1.0, motion=motion), solver="explicit")
 
     scales = np.linspace(3.0, 9.0, 5)
-    found = found_by({"theory": theory, "steps": steps}, scales, tmp_path, nudges=())
+    found = found_by({"theory": theory, "steps": steps}, scales, tmp_path, nudges=(), tolerance=0.04)
     for lowest, build in zip(found.lowest, (theory, steps), strict=True):
-        assert lowest == pytest.approx(mr.overturning_intensity(build, 3.0, 9.0, tolerance=0.01), rel=0.01)
+        assert lowest == pytest.approx(mr.overturning_intensity(build, 3.0, 9.0, tolerance=0.04), rel=0.04)
 
 
 @pytest.mark.parametrize(

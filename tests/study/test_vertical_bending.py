@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from everyday import among
 from scipy.optimize import brentq
 
 import mjrock as mr
@@ -224,7 +225,7 @@ def stepped_by_hand(plumb, crack, above_a_step=True):
     return work / ((below[:, 0] * below[:, 2]).sum() + (above[:, 0] * r * (HEIGHT - above[:, 2])).sum())
 
 
-@pytest.mark.parametrize("plumb", ["inner", "outer"])
+@pytest.mark.parametrize("plumb", among(["inner", "outer"], "inner"))
 def test_a_wall_that_steps_back_bends_at_the_least_of_all_cracks(plumb):
     bending = stepped(plumb)
     cracks = [STEP, *np.linspace(0.07, 5.93, 3001)]

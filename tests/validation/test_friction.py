@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from everyday import among
 from explicit_blocks import explicit
 
 import mjrock as mr
@@ -19,7 +20,7 @@ def energies_left(case, theta):
     return np.sqrt(V[1:] / V[:-1])
 
 
-@pytest.mark.parametrize(("friction", "side"), [(0.6, None), (0.4, None), (0.6, 0.6)])
+@pytest.mark.parametrize(("friction", "side"), among([(0.6, None), (0.4, None), (0.6, 0.6)], (0.4, None), (0.6, 0.6)))
 def test_restitution_with_a_base_that_slides(friction, side):
     """The first rebound, and the sliding is booked."""
     e = mr.Restitution.from_geometry(FIGURE_3)

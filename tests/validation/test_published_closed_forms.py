@@ -175,7 +175,7 @@ def test_the_least_and_the_largest_thrust_of_an_arch():
     assert push + pushed == pytest.approx(min(thrusts(inner, outer)), rel=1e-6)
 
 
-@pytest.mark.parametrize("degrees", among([0, 20, 40, 58, 75, 90, 135], 20, 135))
+@pytest.mark.parametrize("degrees", among([0, 20, 40, 58, 75, 90, 135], 20))
 def test_a_block_that_is_pushed_any_way(degrees):
     """Livesley (Meccanica 27, 1992): it topples over the edge that it reaches first, or slides at mu."""
     angle = math.radians(degrees)

@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
+from everyday import among
 
 import mjrock as mr
 from scripts.measure.rebound_phase import Fall
@@ -74,7 +75,7 @@ EFFECTS = {
 }
 
 
-@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize("name", among(EFFECTS, "load", "damper", "tie"))
 def test_effects_act_as_in_models_of_contact_points(name):
     """At the same step: the rotation, and the whole ledger, to the first rebound."""
     case = released(effects=EFFECTS[name], duration=0.5)
