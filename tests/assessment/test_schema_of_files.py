@@ -91,11 +91,11 @@ def test_a_class_may_be_named_where_there_is_no_other(validator):
 def test_a_file_that_is_read_fits_and_parts_that_stand_once_mean_what_they_mean_in_full(validator, documents):
     """The schema with every part in its place gives the same verdict on every damaged file, and is built otherwise.
 
-    A template has each damage, and a whole file, of up to twenty mechanisms, two of them."""
+    A template has three damages, and a whole file, of up to twenty mechanisms, one."""
     draw, whole = random.Random(4), jsonschema.Draft202012Validator(whole_schema())
     refused = tried = 0
     for name, document in documents.items():
-        for damage in draw.sample(list(DAMAGES), 2 if name.startswith("file") else len(DAMAGES)):
+        for damage in draw.sample(list(DAMAGES), 1 if name.startswith("file") else 3):
             damaged = copy.deepcopy(document)
             table = draw.choice(list(tables_in(damaged)))
             key = draw.choice(sorted(table))

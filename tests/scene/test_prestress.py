@@ -69,8 +69,9 @@ def test_a_tendon_presses_the_block_on_its_ground(solve):
     assert np.abs(run.velocity).max() < 1e-6
 
 
-def test_a_pillar_on_a_tendon_is_pushed_as_statics_says():
+def test_a_pillar_on_a_tendon_is_pushed_as_statics_says(monkeypatch):
     """At a rotation of 0.02 the tendon pulls with its prestress and k times its elongation, from where its ends are."""
+    monkeypatch.setattr("mjrock.study.loading.push.PIECES", 40)
     masonry, force, theta = pillar(10.0), 20e3, 0.02
     curve = mr.push(masonry, 1, 0.045, effects=tendon(force))
     weight, b, h = masonry.blocks[1].mass * mr.GRAVITY, 0.3, 2.1

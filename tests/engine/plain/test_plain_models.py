@@ -20,8 +20,9 @@ def released(wall=WALL, **options):
 
 def test_the_law_carries_over_to_contacts_that_mujoco_finds():
     """The first rebound from the side stop within 1 % of `solve_compliant`, whose kinematics it does not share."""
-    plain = mr.simulate(released(), LAW, **PLAIN)
-    assert plain.restitution[0] == pytest.approx(mr.solve_compliant(released(), LAW).restitution[0], rel=0.01)
+    case = released(duration=1.0)
+    plain = mr.simulate(case, LAW, **PLAIN)
+    assert plain.restitution[0] == pytest.approx(mr.solve_compliant(case, LAW).restitution[0], rel=0.01)
     assert np.abs(plain.energy_residual).max() < 0.01 * plain.ledger.largest
 
 
@@ -79,7 +80,7 @@ EFFECTS = {
 def test_effects_act_as_in_models_of_contact_points(name):
     """At the same step: the rotation, and the whole ledger, to the first rebound."""
     case = released(effects=EFFECTS[name], duration=0.5)
-    plain = mr.simulate(case, LAW, **PLAIN)
+    plain = mr.simulate(case, LAW, timestep=2e-4, **PLAIN)
     points = mr.simulate(case, LAW, timestep=plain.stats["timestep"], output_step=1e-3, ledger=True)
     np.testing.assert_allclose(plain.theta, np.interp(plain.t, points.t, points.theta), atol=1e-3 * WALL.alpha)
     for part in ("ties", "dashpots"):
@@ -90,7 +91,7 @@ def test_effects_act_as_in_models_of_contact_points(name):
 
 
 def test_a_shaken_wall_moves_as_on_contact_points():
-    case = mr.Case(WALL, theta0=0.0, duration=1.2, motion=mr.GroundMotion.sine(-2.0, 0.8), side_stop=False)
+    case = mr.Case(WALL, theta0=0.0, duration=0.9, motion=mr.GroundMotion.sine(-2.0, 0.8), side_stop=False)
     plain = mr.simulate(case, LAW, timestep=2e-4, **PLAIN)
     points = mr.simulate(case, LAW, ledger=True)
     late = np.interp(plain.t, points.t, points.theta)
@@ -100,9 +101,9 @@ def test_a_shaken_wall_moves_as_on_contact_points():
 
 def test_a_run_carries_on_from_its_end():
     """The leapfrog starts anew, so that the two agree to the second order of the step."""
-    whole = mr.simulate(released(duration=0.4), LAW, timestep=1e-4, collisions=True)
+    whole = mr.simulate(released(duration=0.2), LAW, timestep=1e-4, collisions=True)
     first = mr.simulate(released(duration=0.1), LAW, timestep=1e-4, collisions=True)
-    rest = mr.simulate(released(duration=0.3), LAW, timestep=1e-4, collisions=True, start=first.end)
+    rest = mr.simulate(released(duration=0.1), LAW, timestep=1e-4, collisions=True, start=first.end)
     assert rest.theta[-1] == pytest.approx(whole.theta[-1], abs=1e-5 * WALL.alpha)
 
 
