@@ -72,7 +72,7 @@ def test_a_block_and_its_prism_part_by_the_way_that_places_serve_for(number):
 
 @pytest.mark.parametrize("prisms", among([False, True], False))
 def test_a_beam_loses_a_bearing_when_its_pier_has_gone_so_far(prisms):
-    """A bearing of 0.10 m on a pier that moves away by 7.5 mm/s, without friction: it is lost within 2 mm of 0.10 m.
+    """A bearing of 0.10 m on a pier that moves away by 15 mm/s, without friction: it is lost within 2 mm of 0.10 m.
     The smaller bearing yields more, and the beam slides along the tilt of 0.2 mrad that this makes."""
     blocks = [
         GROUND,
@@ -81,11 +81,11 @@ def test_a_beam_loses_a_bearing_when_its_pier_has_gone_so_far(prisms):
         box(-0.10, 2.10, 1, 1.2, name="beam"),
     ]
     masonry = mr.Masonry(in_space(blocks) if prisms else blocks, k_n=1e9, friction=0.0, xi=0.1)
-    t = np.array([0.0, 15.0])
-    history = (t, -0.0075 * t, *(0.0 * t,) * (2 if prisms else 1))
-    run = mr.solve_explicit(mr.MasonryCase(masonry, 15.0, supports={"pier": history}), output_step=5e-3)
+    t = np.array([0.0, 7.5])
+    history = (t, -0.015 * t, *(0.0 * t,) * (2 if prisms else 1))
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 7.5, supports={"pier": history}), output_step=5e-3)
     dropped = int((run.pose[:, 0, 2 if prisms else 1] < -2e-3).argmax())
-    assert 0.0075 * run.t[dropped] + run.pose[dropped, 0, 0] == pytest.approx(0.10, abs=2e-3)
+    assert 0.015 * run.t[dropped] + run.pose[dropped, 0, 0] == pytest.approx(0.10, abs=2e-3)
 
 
 @pytest.mark.slow

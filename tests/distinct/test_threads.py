@@ -235,7 +235,7 @@ def test_blocks_that_fall_have_the_same_bits_in_any_number_of_threads(monkeypatc
 def test_ctrl_c_ends_a_run_in_several_threads_and_the_next_one_has_the_same_bits():
     """The run of a minute ends within one batch of steps, and no thread is left."""
     before = mr.solve_explicit(wall(0.004), threads=2)
-    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer = threading.Timer(0.25, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         mr.solve_explicit(wall(60.0), threads=2)

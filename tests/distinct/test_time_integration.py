@@ -23,7 +23,7 @@ def test_an_interruption_is_heard_within_a_sample():
     case = mr.MasonryCase(SLOW, 0.01)
     mr.solve_explicit(mr.MasonryCase(SLOW, 1e-6))  # compiled
     heard = []
-    timer = threading.Timer(0.7, lambda: (heard.append(time.perf_counter()), os.kill(os.getpid(), signal.SIGINT)))
+    timer = threading.Timer(0.35, lambda: (heard.append(time.perf_counter()), os.kill(os.getpid(), signal.SIGINT)))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         mr.solve_explicit(case)

@@ -15,6 +15,7 @@ from pathlib import Path
 import filelock
 import numpy as np
 import pytest
+from everyday import slow
 
 import mjrock as mr
 from mjrock import background_compilation, compiled, machine
@@ -104,19 +105,16 @@ def ended(process):
     return not is_alive(process)
 
 
-def test_an_answer_comes_without_a_compiler_and_with_the_same_digits(fresh):
-    theta, numba, _ = said(fresh)
-    assert numba == "False"
+@linux
+@pytest.mark.parametrize("ending", [slow("ends"), "killed"])
+def test_an_answer_comes_first_and_the_process_that_compiles_ends_with_its_parent_in_a_test(fresh, ending):
+    """The answer comes before, without a compiler and with the same digits."""
+    parent = started(fresh, WALL + "sys.stdin.read()")
+    theta, numba, process = parent.stdout.readline().split()
     wall = mr.Block.from_size(0.6, 4.2)
     contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
     assert theta == mr.simulate(mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False), contacts).theta[-1].hex()
-
-
-@linux
-@pytest.mark.parametrize("ending", ["ends", "killed"])
-def test_the_process_that_compiles_ends_with_its_parent_in_a_test(fresh, ending):
-    parent = started(fresh, WALL + "sys.stdin.read()")
-    process = parent.stdout.readline().split()[-1]
+    assert numba == "False"
     if process == "None":
         pytest.skip("one core: nothing compiles behind a run")
     assert is_alive(process)

@@ -99,9 +99,9 @@ def test_a_tie_that_breaks_bears_nothing_from_there_on():
     """A block of 0.6 by 2 m leans by theta; its tie at 1.9 m is then longer by 1.9 sin(theta), next to its height."""
     column = mr.Masonry.stack([mr.Block.from_size(0.6, 2.0)])
     tie = mr.Tie(height=1.9, stiffness=1e6, strength=1e3, ultimate=0.05, block="block_0")
-    bare, held = mr.limit_curve(column, 1, to=0.5), mr.limit_curve(column, 1, to=0.5, effects=tie)
+    bare, held = mr.limit_curve(column, 1, to=0.5, poses=20), mr.limit_curve(column, 1, to=0.5, effects=tie, poses=20)
     broken = 1.9 * np.sin(held.pose[:, 0, 2]) > 0.052
-    assert broken[5:].any()
+    assert broken[3:].any()
     assert not broken[:2].any()
     assert held.d_0 == pytest.approx(bare.d_0, rel=1e-3)
     extra = held.multiplier - np.interp(held.displacement, bare.displacement, bare.multiplier)

@@ -30,7 +30,7 @@ def loaded():
 
 @pytest.mark.parametrize(
     "solve",
-    [collapse, lambda: mr.limit_curve(COLUMN, 1), lambda: mr.pushover(WALL)],
+    [collapse, lambda: mr.limit_curve(COLUMN, 1, poses=20), lambda: mr.pushover(WALL)],
     ids=["collapse", "limit curve", "push-over"],
 )
 def test_a_horizontal_force_by_hand(solve):
