@@ -1,9 +1,10 @@
 """What set-up costs by number of blocks: processor time of its parts, memory, and a search for contacts.
 
 Walls in running bond, and façades in space with return walls, each in a process of its own, or with `--quick` all in
-this one. The parts are the blocks with their joints, their contact lines, the lowest frequency for stiffness-proportional damping, the pose of rest, and
-what explicit steps need beyond. A search finds the contacts of all blocks that have no joint. Prints the table with
-the estimate of memory by which masonry is refused, and writes setup_cost.txt and .csv.
+this one. The parts are the blocks with their joints, their contact lines, the lowest frequency for
+stiffness-proportional damping, the pose of rest, and what explicit steps need beyond. A search finds the contacts of
+all blocks that have no joint. Prints the table with the estimate of memory by which masonry is refused, and writes
+setup_cost.txt and .csv.
 """
 
 from __future__ import annotations
