@@ -58,17 +58,12 @@ COMMANDS = {
 STATUSES = "Exit status: 0 holds or done, 1 does not hold, 2 error, 130 interrupted."
 
 
-def commands() -> str:
-    """The commands, a line each."""
-    lines = aligned([("", name, command.line) for name, command in COMMANDS.items()], "<")
-    return "\n".join(["commands:", *lines])
-
-
 def answered(arguments: Sequence[str]) -> Answer:
     """What the command that is named answers; without one, the help."""
     parser = parser_of("", "Rocking masonry in MuJoCo, by explicit steps and by theory. Commands that need no script.")
     parser.prog, parser.usage = "mjrock", "mjrock COMMAND ..."
-    parser.epilog = f"{commands()}\n\nmjrock COMMAND --help describes a command.\n{STATUSES}"
+    lines = aligned([("", name, command.line) for name, command in COMMANDS.items()], "<")
+    parser.epilog = "\n".join(["commands:", *lines, "", "mjrock COMMAND --help describes a command.", STATUSES])
     parser.add_argument("--version", action="version", version=f"mjrock {__version__}", help="print the version")
     parser.add_argument("command", choices=COMMANDS, metavar="COMMAND", help=SUPPRESS)
     if not arguments:

@@ -70,10 +70,10 @@ class Method(NamedTuple):
         neglected: share of the normal force that the friction row of a contact that slides may add to it [-].
         looks: most looks at a step in which contacts slide.
         patient: looks in which a row is given back only once the friction is known.
-        known: change of a friction force from look to look, over the largest of the step, that asks for no other look
+        known: change of a friction force from look to look, over the largest of the step, that needs no further look
             [-].
         way_known: change of the direction of a friction force in space from look to look, times the force, over the
-            largest of the step, that asks for no other look [-].
+            largest of the step, that needs no further look [-].
         held_friction: friction coefficient of the outer edge of a wall that holds, with a side stop, on two lines [-].
             On a bed of n lines it is n/2 times that. This edge must not slip when the side impact pushes the hardly
             loaded base. On the paper's wall mu = 1 loses 13 % of |e_1s| and mu = 3 loses 2 %; from mu = 10 on nothing

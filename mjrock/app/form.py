@@ -22,21 +22,21 @@ from ..reporting.texts import MINUS, POWERS, Words, languages
 
 TEXTS = Path(__file__).with_name("texts.toml")
 """The texts of the form, beside those of the report."""
-NAMES = "kind", "make", "solver"
+VARIANT_KEYS = "kind", "make", "solver"
 """Keys that name the class, its constructor or the solver that a table stands for."""
-FILES = "file", "folder"
+FILE_CONTROLS = "file", "folder"
 """Controls whose values are names of files that are uploaded, or their folder."""
-HERE = "."
+UPLOAD_FOLDER = "."
 """The folder of all files that are uploaded."""
-ANY = frozenset({"number", "boolean", "array"})
+ANY_TYPE = frozenset({"number", "boolean", "array"})
 """Types of a value whose key is not known."""
-COMMA = re.compile(r"^([+-]?(?:0+|\d+(?=,(?!\d{3}(?!\d)))|\d{4,})),(\d+)(?=[^\d.,]|$)")
+NUMBER_WITH_COMMA = re.compile(r"^([+-]?(?:0+|\d+(?=,(?!\d{3}(?!\d)))|\d{4,})),(\d+)(?=[^\d.,]|$)")
 """A number with a comma as its decimal mark, and what follows. One such as 1,000 may be a thousand and is left out."""
 TRUTHS = {"true": True, "false": False}
-WRITTEN_IN = "en"
+SCHEMA_LANGUAGE = "en"
 """The language of the descriptions in the schema."""
-END = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
-ENDS = re.compile(rf"(?: \[[^\]]*\])?, (?:above )?({END}) to ({END})(?:(?=[.,;:](?!\d)|$)|(?P<and> and ))")
+BOUND = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+RANGE_TEXT = re.compile(rf"(?: \[[^\]]*\])?, (?:above )?({BOUND}) to ({BOUND})(?:(?=[.,;:](?!\d)|$)|(?P<and> and ))")
 """The range of a number in its description, with its unit."""
 
 
@@ -126,7 +126,7 @@ class Plan:
             control = self._control(key, plain, types, bool(choices))
         number = next((one for one in plain if "unit" in one or "minimum" in one), {})
         text = _without_range(str(node.get("description", "")), number)
-        help = text if self.words.language == WRITTEN_IN else self._help(key, place)
+        help = text if self.words.language == SCHEMA_LANGUAGE else self._help(key, place)
         return Field(
             key,
             self._label(key, place),
@@ -169,7 +169,7 @@ class Plan:
         """What a table may be."""
         found = []
         kinds = {one["properties"].get("kind", {}).get("const") for _, one in tables}
-        chosen = NAMES if len(kinds) > 1 else NAMES[1:]
+        chosen = VARIANT_KEYS if len(kinds) > 1 else VARIANT_KEYS[1:]
         for i, (name, one) in enumerate(tables):
             properties = one["properties"]
             consts = {key: properties[key] for key in chosen if "const" in properties.get(key, {})}
@@ -189,7 +189,7 @@ class Plan:
         self.tables[id] = []
         needed = {*table.get("required", ()), *table.get("else", {}).get("required", ())}
         for key, node in table["properties"].items():
-            if key not in NAMES or "const" not in node:
+            if key not in VARIANT_KEYS or "const" not in node:
                 self.tables[id].append(self._field(key, node, key in needed, id))
 
     def _control(self, key: str, plain: list[Part], types: frozenset[str], chosen: bool) -> str:
@@ -268,7 +268,7 @@ class Plan:
 
         used = {key for one in field.variants for key in one.names}
         fitting = [one for one in field.variants if all(fits(one, key) for key in used)]
-        return [*fitting, *(one for one in field.variants if fits(one, NAMES[0])), *field.variants][0]
+        return [*fitting, *(one for one in field.variants if fits(one, VARIANT_KEYS[0])), *field.variants][0]
 
     def tables_of(self, state: Document) -> Document:
         """The tables of the file that the input of the form stands for."""
@@ -286,7 +286,7 @@ class Plan:
             return self._item(field, value)
         if isinstance(value, list):
             return [self._item(field, one) for one in value]
-        return typed(value, ANY if field is None else field.types) if isinstance(value, str) else value
+        return typed(value, ANY_TYPE if field is None else field.types) if isinstance(value, str) else value
 
     def _item(self, field: Field | None, value: object) -> object:
         """A table of a field, or an item of a list, whose texts stay as they are."""
@@ -300,8 +300,8 @@ class Plan:
         fields = self.tables[self.variant(field, tables).id]
         for key, value in tables.items():
             own = self.field(fields, key)
-            for at, one in _each(value, (key,)):
-                if own is not None and own.control in FILES and not isinstance(one, Mapping):
+            for at, one in _places_of_items(value, (key,)):
+                if own is not None and own.control in FILE_CONTROLS and not isinstance(one, Mapping):
                     yield at, one
                 elif own is not None and own.variants and isinstance(one, Mapping):
                     yield from ((at + place, name) for place, name in self._files_of(own, one))
@@ -334,7 +334,7 @@ def _mechanisms_of(several: Part) -> Part:
     return found
 
 
-def _each(value: object, place: Place) -> list[tuple[Place, object]]:
+def _places_of_items(value: object, place: Place) -> list[tuple[Place, object]]:
     """A value with its place, or each item of a list with its own."""
     return [((*place, i), one) for i, one in enumerate(value)] if isinstance(value, list) else [(place, value)]
 
@@ -362,7 +362,7 @@ def _without_range(text: str, node: Part) -> str:
     def repeats(found: re.Match[str]) -> bool:
         return float(found[1]) == node.get("minimum") and node.get("maximum", float(found[2])) == float(found[2])
 
-    return ENDS.sub(lambda found: (", " if found["and"] else "") if repeats(found) else found[0], text)
+    return RANGE_TEXT.sub(lambda found: (", " if found["and"] else "") if repeats(found) else found[0], text)
 
 
 def _is_number(value: object) -> bool:
@@ -376,7 +376,7 @@ def typed(text: str, types: frozenset[str]) -> object:
     """
     text = text.strip()
     if types & {"number", "integer"}:
-        text = COMMA.sub(r"\1.\2", text)
+        text = NUMBER_WITH_COMMA.sub(r"\1.\2", text)
         for kind in (int, float):
             try:
                 return kind(text)

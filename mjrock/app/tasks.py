@@ -1,4 +1,4 @@
-"""What the form asks for: its plan, the verdict on its input, runs, and reports. Each answers in parts.
+"""The tasks that the form requests: its plan, the verdict on its input, runs, and reports. Each answers in parts.
 
 A request brings the whole input and the files that go with it. Nothing else is read, and nothing is written but in a
 folder that goes with the request.
@@ -16,6 +16,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from io import BytesIO
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -39,7 +40,7 @@ from ..reporting.texts import FOUND, Words, languages
 from ..reporting.verdicts import Mechanism, answer_parts, kinematic_steps, ranked, required_checks
 from ..result.response import Response
 from ..toml_text import toml_text
-from .form import HERE, TEXTS, Plan, languages_named, state_of, texts_of
+from .form import TEXTS, UPLOAD_FOLDER, Plan, languages_named, state_of, texts_of
 from .worker import Item, Payload, Send, Task
 
 MOST_FILES, LONGEST_NAME = 50, 200
@@ -47,7 +48,7 @@ MOST_FILES, LONGEST_NAME = 50, 200
 
 MESSAGE_INTERVAL = 0.15
 """Time between two messages on how far a run is [s]."""
-TYPES = {".pdf": "application/pdf", ".html": "text/html", ".csv": "text/csv"}
+MEDIA_TYPES = {".pdf": "application/pdf", ".html": "text/html", ".csv": "text/csv"}
 """Types of the files of a report."""
 
 
@@ -105,7 +106,7 @@ def check(request: Payload, send: Send) -> None:
             checks = {name or kind_named(one.problem, words): one for name, one in assessment.mechanisms.items()}
             mechanisms = required_checks(dict(zip(checks, assessment.check().values(), strict=True)), "")
             send(verdict(mechanisms, folder.notes(words), words))
-        for part in sketches(assessment, words):
+        for part in sketch_parts(assessment, words):
             send(part)
 
 
@@ -113,7 +114,7 @@ def verdict(mechanisms: Sequence[Mechanism], notes: Sequence[Markup], words: Wor
     """What holds clause by clause, what is doubtful, and the steps."""
     return {
         "verdict": "".join([*answer_parts(mechanisms, [], words), *notes]),
-        "ratio": in_short(mechanisms, words),
+        "ratio": short_verdict(mechanisms, words),
         "steps": element("h2", words("checks")) + "".join(kinematic_steps(mechanisms, words)),
     }
 
@@ -123,13 +124,13 @@ def kind_named(problem: object, words: Words) -> str:
     return words(f"table_{type(problem).__name__}")
 
 
-def in_short(mechanisms: Sequence[Mechanism], words: Words) -> str:
+def short_verdict(mechanisms: Sequence[Mechanism], words: Words) -> str:
     """Whether the mechanism with the least ratio holds, in the word of its verdict, and that ratio."""
     first = ranked(mechanisms)[0]
     return f"{words(first.kind)} {words.ratio(first.least_verdict.ratio)}"
 
 
-def sketches(assessment: Assessment, words: Words) -> Iterator[Item]:
+def sketch_parts(assessment: Assessment, words: Words) -> Iterator[Item]:
     """The drawing of each mechanism, with its name where there are several, and its number."""
     count = len(assessment.mechanisms)
     for number, (name, one) in enumerate(assessment.mechanisms.items()):
@@ -177,21 +178,20 @@ def run(request: Payload, send: Send) -> None:
         assessment = folder.assessment()
         analyses = assessment.analyses()
         sender = Sender(send, words, sum(map(len, analyses.values())))
-        responses: dict[str, list[Response]] = {}
-        for name, several in analyses.items():
-            for one in several:
-                with progress_given_to(sender):
-                    responses.setdefault(name, []).append(one.solve())
-                sender.before += 1
+        responses: dict[str, list[Response]] = {name: [] for name, runs in analyses.items() if runs}
+        for name, analysis in ((name, analysis) for name, runs in analyses.items() for analysis in runs):
+            with progress_given_to(sender):
+                responses[name].append(analysis.solve())
+            sender.before += 1
         notes = folder.notes(words)
-        found = dynamic(assessment, responses, words)
-        found += [part for name, several in responses.items() for part in of_runs(name, several, words)]
-        send({"answers": "".join([*found, *notes])})
-        page = view(farthest([one for several in responses.values() for one in several]), folder.path / "film.html")
-        send({"keep": {"film": page.read_bytes(), "responses": pickle.dumps(responses)}})
+        parts = dynamic_answers(assessment, responses, words)
+        parts += [part for name, found in responses.items() for part in run_parts(name, found, words)]
+        send({"answers": "".join([*parts, *notes])})
+        film = view(farthest_response(list(chain(*responses.values()))), folder.path / "film.html")
+        send({"keep": {"film": film.read_bytes(), "responses": pickle.dumps(responses)}})
 
 
-def dynamic(assessment: Assessment, responses: Mapping[str, Sequence[Response]], words: Words) -> list[Markup]:
+def dynamic_answers(assessment: Assessment, responses: Mapping[str, Sequence[Response]], words: Words) -> list[Markup]:
     """What holds by the runs under records; nothing of a release, and without a site."""
     try:
         checks = assessment.dynamic_check(responses)
@@ -201,7 +201,7 @@ def dynamic(assessment: Assessment, responses: Mapping[str, Sequence[Response]],
     return answer_parts(required_checks(named, ""), [], words)
 
 
-def of_runs(name: str, responses: Sequence[Response], words: Words) -> list[Markup]:
+def run_parts(name: str, responses: Sequence[Response], words: Words) -> list[Markup]:
     """How many of the runs of a mechanism overturn, and a table of them."""
     case = responses[0].case
     runs = required_runs(Request(case, responses), words)
@@ -209,7 +209,7 @@ def of_runs(name: str, responses: Sequence[Response], words: Words) -> list[Mark
     return [*heading, element("p", outcome_sentence(runs, words)), *run_tables(parts_of("", case, [], runs), words)]
 
 
-def farthest(responses: Sequence[Response]) -> Response:
+def farthest_response(responses: Sequence[Response]) -> Response:
     """The response with the largest displacement."""
     return max(responses, key=lambda one: content_of(one.case).largest_displacement(one))
 
@@ -234,7 +234,7 @@ def report(request: Payload, send: Send) -> None:
 def document(path: Path) -> Item:
     """A file as the page takes it."""
     data = base64.b64encode(path.read_bytes()).decode()
-    return {"name": path.name, "type": TYPES.get(path.suffix, "application/octet-stream"), "data": data}
+    return {"name": path.name, "type": MEDIA_TYPES.get(path.suffix, "application/octet-stream"), "data": data}
 
 
 def words_in(request: Payload) -> Words:
@@ -287,13 +287,8 @@ class Folder:
             raise ValueError(f"files has {len(given)} files; the valid range is 0 to {MOST_FILES}")
         for name, content in given.items():
             require_kind(f"files[{name!r}]", content, str)
-            if (
-                name in ("", ".", "..")
-                or name != Path(name).name
-                or "\\" in name
-                or "\0" in name
-                or len(name) > LONGEST_NAME
-            ):
+            is_plain = name == Path(name).name and not {"\\", "\0"} & set(name)
+            if not is_plain or name in ("", ".", "..") or len(name) > LONGEST_NAME:
                 raise ValueError(f"files has {shown(name)}, which is no plain name of a file")
             try:
                 self.files[name] = base64.b64decode(content, validate=True)
@@ -329,7 +324,7 @@ class Folder:
         faults = [
             Fault(place, Message(lost, place=spelt_place(place), value=brief(name)))
             for place, name in plan_of("en").files_in(tables)
-            if name not in (*self.files, HERE)
+            if name not in (*self.files, UPLOAD_FOLDER)
         ]
         if faults:
             raise AssessmentError(tuple(faults))
@@ -337,4 +332,4 @@ class Folder:
 
 
 TASKS: dict[str, Task] = {"form": form, "open": open_file, "save": save, "check": check, "run": run, "report": report}
-"""What the form may ask for, by name."""
+"""What the form may request, by name."""

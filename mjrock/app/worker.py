@@ -1,4 +1,4 @@
-"""Processes that do the work of the form: each does one task at a time, and is killed where nobody waits for it."""
+"""Processes that do the work of the form, a task at a time. One whose answer nobody waits for is killed."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ Payload = Mapping[str, Any]
 """What a task is to answer: an object of JSON that the page has sent."""
 Item = dict[str, Any]
 """A part of an answer, such as how far a run is, or a verdict. What is under "keep" stays with the server as bytes."""
+Parts = Generator[Item, None, None]
 Send = Callable[[Item], None]
 Task = Callable[[Payload, Send], None]
 """A function that answers a request in parts, each of which it sends."""
@@ -84,19 +85,19 @@ class Worker:
 
     def __init__(self, module: str) -> None:
         context = multiprocessing.get_context("spawn")
-        self.pipe, other = context.Pipe()
+        self.pipe, child_end = context.Pipe()
         self.folder = tempfile.TemporaryDirectory(prefix="mjrock-", ignore_cleanup_errors=True)
-        self.process = context.Process(target=serve, args=(other, module, self.folder.name), daemon=True)
+        self.process = context.Process(target=serve, args=(child_end, module, self.folder.name), daemon=True)
         self.process.start()
-        other.close()
+        child_end.close()
 
-    def parts(self, name: str, request: Payload, left: Callable[[], bool], limit: float) -> Generator[Item, None, None]:
+    def parts(self, name: str, request: Payload, is_disconnected: Callable[[], bool], limit: float) -> Parts:
         """The parts of an answer as they come.
 
         Args:
             name: of the task.
             request: what it is to answer.
-            left: whether nobody waits any more.
+            is_disconnected: whether nobody waits for the answer any more.
             limit: on the time of the task [s].
 
         Raises:
@@ -109,7 +110,7 @@ class Worker:
             self.pipe.send((name, request))
             while True:
                 while not self.pipe.poll(CHILD_POLL_INTERVAL):
-                    if left():
+                    if is_disconnected():
                         raise ConnectionAbortedError("nobody waits for the answer")
                     if time.monotonic() > end:
                         raise TimeoutError(f"this took longer than {limit:g} s and was ended")
@@ -141,19 +142,19 @@ class Team:
         self._idle, self._busy = [Worker(module)], list[Worker]()
         self._closed = False
 
-    def parts(self, name: str, request: Payload, left: Callable[[], bool], limit: float) -> Generator[Item, None, None]:
+    def parts(self, name: str, request: Payload, is_disconnected: Callable[[], bool], limit: float) -> Parts:
         """The parts of an answer as they come, see `Worker.parts`. The process is killed if they do not all come.
 
         Raises:
             BusyError: where all workers are at work.
         """
         worker = self._take()
-        done = False
+        is_complete = False
         try:
-            yield from worker.parts(name, request, left, limit)
-            done = True
+            yield from worker.parts(name, request, is_disconnected, limit)
+            is_complete = True
         finally:
-            self._leave(worker, done)
+            self._leave(worker, is_complete)
 
     def _take(self) -> Worker:
         with self._lock:
@@ -169,11 +170,11 @@ class Team:
             self._busy.append(worker)
             return worker
 
-    def _leave(self, worker: Worker, done: bool) -> None:
+    def _leave(self, worker: Worker, is_complete: bool) -> None:
         with self._lock:
             if worker in self._busy:  # and is not closed with the others
                 self._busy.remove(worker)
-            if done and not self._closed and len(self._idle) < MOST_IDLE:
+            if is_complete and not self._closed and len(self._idle) < MOST_IDLE:
                 self._idle.append(worker)
                 return
         with contextlib.suppress(OSError):

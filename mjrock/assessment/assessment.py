@@ -74,7 +74,7 @@ class Assessment:
     confined: bool = False
 
     def __repr__(self) -> str:
-        parts = [f"{name or 'mechanism'}: {one.problem!r}" for name, one in self.mechanisms.items()]
+        parts = [f"{name or 'mechanism'}: {mechanism.problem!r}" for name, mechanism in self.mechanisms.items()]
         return f"<Assessment of {', '.join(parts)}>"
 
     def check(self) -> dict[str, MechanismCheck]:
@@ -83,7 +83,7 @@ class Assessment:
         Raises:
             AssessmentError: with the line of the mechanism that cannot be checked, and why.
         """
-        return {name: self._called(one, one.check) for name, one in self.mechanisms.items()}
+        return {name: self._call(mechanism, mechanism.check) for name, mechanism in self.mechanisms.items()}
 
     def analyses(self) -> dict[str, list[Analysis]]:
         """Tasks of all runs for `campaign`, by mechanism: each record in both polarities, or the release.
@@ -93,13 +93,13 @@ class Assessment:
         Raises:
             AssessmentError: with the line of the mechanism that cannot be run, and why.
         """
-        return {name: self._called(one, one.analyses) for name, one in (self.moved or self.mechanisms).items()}
+        return {name: self._call(one, one.analyses) for name, one in (self.moved or self.mechanisms).items()}
 
     def run(self) -> dict[str, list[Response]]:
         """The responses of all runs, by mechanism, see `analyses`."""
         return {
-            name: [self._called(self.mechanisms[name], task.solve) for task in tasks]
-            for name, tasks in self.analyses().items()
+            name: [self._call(self.mechanisms[name], analysis.solve) for analysis in analyses]
+            for name, analyses in self.analyses().items()
         }
 
     def dynamic_check(self, runs: Mapping[str, Sequence[Response]]) -> dict[str, DynamicCheck]:
@@ -108,8 +108,8 @@ class Assessment:
         Args:
             runs: responses by mechanism, such as those of `run`.
         """
-        found = {name: self.mechanisms[name] for name in runs}
-        return {name: self._called(one, partial(one.dynamic, runs[name])) for name, one in found.items()}
+        mechanisms = {name: self.mechanisms[name] for name in runs}
+        return {name: self._call(one, partial(one.dynamic, runs[name])) for name, one in mechanisms.items()}
 
     def design(self) -> Design:
         """The first of the values of `[design]` for which every condition holds.
@@ -149,39 +149,39 @@ class Assessment:
         from ..reporting.page import report
         from ..reporting.texts import Words
 
-        first: Any = next(iter(self.mechanisms.values())).problem
-        checks: dict[str, Any] = {name: [one] for name, one in self.check().items()} if self.has_site else {}
-        for name, of in (runs or {}).items():
-            one = self.mechanisms[name]
-            if (found := self._called(one, partial(one.verdict_on, of))) is not None:
-                checks.setdefault(name, []).append(found)
-        shown = dict(runs or {})
-        impacts = {name: self.mechanisms[name].shaking for name in shown}
-        given: dict[str, Any] = {
+        problem: Any = next(iter(self.mechanisms.values())).problem
+        checks: dict[str, Any] = {name: [check] for name, check in self.check().items()} if self.has_site else {}
+        for name, responses_of_one in (runs or {}).items():
+            mechanism = self.mechanisms[name]
+            if (verdict := self._call(mechanism, partial(mechanism.verdict_on, responses_of_one))) is not None:
+                checks.setdefault(name, []).append(verdict)
+        responses_by_name = dict(runs or {})
+        shakings = {name: self.mechanisms[name].shaking for name in responses_by_name}
+        options: dict[str, Any] = {
             "checks": checks or None,
             "project": dict(self.project) or None,
             "language": language or self.language,
-            "e": {name: one.e for name, one in impacts.items() if one.e is not None} or None,
-            "contacts": {name: one.contacts for name, one in impacts.items() if one.contacts is not None} or None,
+            "e": {name: shaking.e for name, shaking in shakings.items() if shaking.e is not None} or None,
+            "contacts": {name: shaking.contacts for name, shaking in shakings.items() if shaking.contacts} or None,
         }
         if self.trials:
-            words = Words(given["language"])
+            words = Words(options["language"])
             key = words("design_of", key=self.trials["key"])
-            given["sections"] = {words("design"): [key, self.design()]}
+            options["sections"] = {words("design"): [key, self.design()]}
         if list(self.mechanisms) == [""]:
-            given |= {name: value[""] for name, value in given.items() if name in KEYS_BY_MECHANISM and value}
-        responses: Any = shown.get("", ()) if "" in self.mechanisms else shown or ()
-        return report(first, responses, path, **given, **self.texts)
+            options |= {name: value[""] for name, value in options.items() if name in KEYS_BY_MECHANISM and value}
+        responses: Any = responses_by_name.get("", ()) if "" in self.mechanisms else responses_by_name or ()
+        return report(problem, responses, path, **options, **self.texts)
 
     @property
     def moved(self) -> dict[str, Mechanism]:
         """The mechanisms that something moves, by name."""
-        return {name: one for name, one in self.mechanisms.items() if one.is_moved}
+        return {name: mechanism for name, mechanism in self.mechanisms.items() if mechanism.is_moved}
 
     @property
     def has_site(self) -> bool:
         """Whether each mechanism has what a check is against."""
-        return all(one.demand is not None for one in self.mechanisms.values())
+        return all(mechanism.demand is not None for mechanism in self.mechanisms.values())
 
     def to_toml(self, path: str | Path | None = None) -> str:
         """The file as TOML text, floats with all their digits; written to a path where one is given.
@@ -200,28 +200,27 @@ class Assessment:
 
     def _tables(self) -> dict[str, object]:
         """Its tables, from the objects."""
-        found: dict[str, object] = {} if self.language == "en" else {"language": self.language}
-        found |= {name: dict(one) for name, one in (("project", self.project), ("design", self.trials)) if one}
+        tables: dict[str, object] = {} if self.language == "en" else {"language": self.language}
+        tables |= {name: dict(value) for name, value in (("project", self.project), ("design", self.trials)) if value}
         try:
             if list(self.mechanisms) == [""]:
-                found |= mechanism_table(self.mechanisms[""])
+                tables |= mechanism_table(self.mechanisms[""])
             else:
-                places = {name: ("mechanisms", name) for name in self.mechanisms}
-                found["mechanisms"] = {name: mechanism_table(self.mechanisms[name], at) for name, at in places.items()}
-            found |= {"report": values_of(self.texts, report_maker().keys, ("report",))} if self.texts else {}
+                named = self.mechanisms.items()
+                tables["mechanisms"] = {name: mechanism_table(one, ("mechanisms", name)) for name, one in named}
+            tables |= {"report": values_of(self.texts, report_maker().keys, ("report",))} if self.texts else {}
         except UnwrittenError as error:
             raise self._error(error.place, str(error)) from None
-        again = assessment_of(found, folder=self.folder)
-        for name, one in () if again == self else self.mechanisms.items():
-            for part in (part.name for part in fields(one) if part.compare):
-                mine, other = getattr(one, part), getattr(again.mechanisms[name], part)
-                if mine != other:
-                    raise self._error(
-                        (), f"{name or 'mechanism'}: its {part} is {mine!r:.300}; a file gives {other!r:.300}"
-                    )
-        return found
+        reread = assessment_of(tables, folder=self.folder)
+        for name, mechanism in () if reread == self else self.mechanisms.items():
+            for part in (part.name for part in fields(mechanism) if part.compare):
+                own, of_file = getattr(mechanism, part), getattr(reread.mechanisms[name], part)
+                if own != of_file:
+                    text = f"{name or 'mechanism'}: its {part} is {own!r:.300}; a file gives {of_file!r:.300}"
+                    raise self._error((), text)
+        return tables
 
-    def _called(self, mechanism: Mechanism, call: Callable[[], Any]) -> Any:
+    def _call(self, mechanism: Mechanism, call: Callable[[], Any]) -> Any:
         """What a function of a mechanism returns; its error names the table."""
         try:
             return call()
@@ -319,12 +318,7 @@ def assessment_of_text(text: str, name: str = "", folder: Path | None = None) ->
 
 
 def assessment_of(
-    document: Document,
-    name: str = "",
-    folder: Path | None = None,
-    source: str = "",
-    *,
-    confined: bool = False,
+    document: Document, name: str = "", folder: Path | None = None, source: str = "", *, confined: bool = False
 ) -> Assessment:
     """The assessment of plain tables, as `tomllib` and a form make them.
 
@@ -340,19 +334,19 @@ def assessment_of(
     """
     reader = Reader(folder, source, name, confined=confined)
     top: Table = located(document)
-    whole: dict[str, Any] = {}
-    for name_of in FILE_KEYS.keys() & top.values.keys():
-        whole[name_of] = reader.attempted(partial(reader.value, FILE_KEYS[name_of], top.values[name_of], (name_of,)))
-    reader.language = whole.get("language") or reader.language
-    texts = reader.attempted(partial(_texts, reader, top)) or {}
-    trials = reader.attempted(partial(_trials, reader, top, document))
+    file_values: dict[str, Any] = {}
+    for key in FILE_KEYS.keys() & top.values.keys():
+        file_values[key] = reader.attempt(partial(reader.value, FILE_KEYS[key], top.values[key], (key,)))
+    reader.language = file_values.get("language") or reader.language
+    texts = reader.attempt(partial(_texts, reader, top)) or {}
+    trials = reader.attempt(partial(_trials, reader, top, document))
     mechanisms = mechanisms_of(reader, top.without(*FILE_KEYS, "report", "design"))
     if not mechanisms and not reader.faults:
         reader.refusal((), "{place} has no mechanism; give it a table [wall], or several under [mechanisms.NAME]")
     reader.require_sound()
     rest: dict[str, Any] = {"source": source, "folder": folder, "texts": texts, "trials": trials or {}}
     rest["confined"] = confined
-    return Assessment(mechanisms, name=name, document=document, **rest, **whole)
+    return Assessment(mechanisms, name=name, document=document, **rest, **file_values)
 
 
 def _texts(reader: Reader, top: Table) -> dict[str, Any]:
@@ -365,16 +359,16 @@ def _trials(reader: Reader, top: Table, document: Document) -> dict[str, Any]:
     if "design" not in top.values:
         return {}
     table = reader.required_table(top, "design")
-    found = reader.arguments(table.without("values"), DESIGN)
+    arguments = reader.arguments(table.without("values"), DESIGN)
     try:
-        replaced(document, place_of(str(found["key"])), None)
+        replaced(document, place_of(str(arguments["key"])), None)
     except (LookupError, TypeError):
         unknown = "{place} = {key!r} is no key of the file; spell it effects[0].diameter"
-        reader.refusal(table.place_of("key"), unknown, key=found["key"])
+        reader.refusal(table.place_of("key"), unknown, key=arguments["key"])
     values = table.values.get("values")
     if not isinstance(values, list) or not values:
         reader.refusal(table.place_of("values"), "{place} is no list of at least one value of that key")
-    return found | {"values": document["design"].get("values")}
+    return arguments | {"values": document["design"].get("values")}
 
 
 @cache

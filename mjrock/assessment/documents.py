@@ -56,7 +56,7 @@ def table_of(value: Any, kinds: Sequence[Hint], place: Place) -> Tables:
         table["make"] = kind.__name__
     given = {name: getattr(value, name) for name in keys}
     return table | values_of(
-        {name: one for name, one in given.items() if not _same(one, keys[name].default)}, keys, place
+        {name: one for name, one in given.items() if not _is_default(one, keys[name].default)}, keys, place
     )
 
 
@@ -68,11 +68,11 @@ def values_of(values: Mapping[str, object], keys: Mapping[str, Key], place: Plac
             raise UnwrittenError((*place, name), f"= {shown(value)} is no key of a file; leave it out")
         key = keys[name]
         if value is not None:
-            table[key_named(key)] = plain(value, key.kinds, (*place, key_named(key)))
+            table[key_named(key)] = file_value(value, key.kinds, (*place, key_named(key)))
     return table
 
 
-def plain(value: object, kinds: Sequence[Hint], place: Place) -> object:
+def file_value(value: object, kinds: Sequence[Hint], place: Place) -> object:
     """A value as a file has it: a number, a text, a truth, a list or a table.
 
     Raises:
@@ -88,23 +88,21 @@ def plain(value: object, kinds: Sequence[Hint], place: Place) -> object:
         name = getattr(value, "name", None)
         return name if str in kinds and isinstance(name, str) else table_of(value, kinds, place)
     if isinstance(value, Mapping):
-        return {str(name): plain(one, (), (*place, str(name))) for name, one in value.items()}
+        return {str(name): file_value(one, (), (*place, str(name))) for name, one in value.items()}
     if isinstance(value, Sequence) and all(isinstance(one, Support) for one in value) and value:
-        return {one.block: plain(one.histories, (), (*place, one.block)) for one in value}
+        return {one.block: file_value(one.histories, (), (*place, one.block)) for one in value}
     if isinstance(value, Sequence):
         wholes = [getattr(one, "report_item", one) for one in value]  # the wedges in the place of their masses
-        value = [
-            one if isinstance(one, CombinedEffect) else given
-            for one, given in zip(wholes, value, strict=True)
-            if one is not None
-        ]
-        of = [one for kind in kinds for item in items_of(kind) or () if item is not ... for one in kinds_of(item)]
-        return [plain(one, of, (*place, i)) for i, one in enumerate(value)]
-    what = "is a function" if callable(value) else f"= {shown(value)} is no number, text or table"
-    raise UnwrittenError(place, f"{what}, for which a file has no words; give a number")
+        pairs = [(whole, one) for whole, one in zip(wholes, value, strict=True) if whole is not None]
+        items = [whole if isinstance(whole, CombinedEffect) else one for whole, one in pairs]
+        hints = [hint for kind in kinds for hint in items_of(kind) or () if hint is not ...]
+        item_kinds = [kind for hint in hints for kind in kinds_of(hint)]
+        return [file_value(item, item_kinds, (*place, i)) for i, item in enumerate(items)]
+    reason = "is a function" if callable(value) else f"= {shown(value)} is no number, text or table"
+    raise UnwrittenError(place, f"{reason}, for which a file has no words; give a number")
 
 
-def _same(value: object, default: object) -> bool:
+def _is_default(value: object, default: object) -> bool:
     """Whether a value is the default of its argument."""
     return value is default or (isinstance(value, bool | int | float | str | tuple) and value == default)
 
@@ -147,7 +145,7 @@ def _demand(demand: object, place: Place) -> Tables:
         table = {"kind": type(ground).__name__} | table_of(ground, (type(ground),), (*place, "site"))
         site |= {name: table} if name else table
         floors.append(
-            {key: plain(getattr(one, key), (), (*place, "floor", key)) for key in FLOOR.keys}
+            {key: file_value(getattr(one, key), (), (*place, "floor", key)) for key in FLOOR.keys}
             if isinstance(one, FloorSpectrum)
             else {}
         )

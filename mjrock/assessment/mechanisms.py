@@ -113,16 +113,16 @@ class Mechanism:
         from ..study.analysis import Analysis, MasonryAnalysis
 
         if isinstance(self.problem, VerticalBending | HorizontalBending):
-            bends = Message("a wall that bends is checked and not run; give its blocks as a MasonryCase to run it")
-            raise ValueError(bends)
+            message = Message("a wall that bends is checked and not run; give its blocks as a MasonryCase to run it")
+            raise ValueError(message)
         shaking, case = self.shaking, self.case
-        shaken: list[Any] = [replace(case, motion=motion) for motion in shaking.motions] or [case]
+        cases: list[Any] = [replace(case, motion=motion) for motion in shaking.motions] or [case]
         if not isinstance(self.problem, Checked):
-            return [MasonryAnalysis(one, solver=shaking.solver, options=shaking.options) for one in shaken]
+            return [MasonryAnalysis(case, solver=shaking.solver, options=shaking.options) for case in cases]
         wall = cast(Case, case)
         e = shaking.e or Restitution.from_geometry(wall.wall, wall.stop_top)
-        of = {"e": e} if shaking.solver == "analytical" else {"contacts": shaking.contacts}
-        return [Analysis(one, shaking.solver, options=shaking.options, **of) for one in shaken]
+        impact_options = {"e": e} if shaking.solver == "analytical" else {"contacts": shaking.contacts}
+        return [Analysis(case, shaking.solver, options=shaking.options, **impact_options) for case in cases]
 
     def dynamic(self, runs: Sequence[Response] | Sequence[Analysis], **kept: Path) -> DynamicCheck:
         """The check of its runs, see `dynamic_check`.
@@ -154,21 +154,23 @@ class Mechanism:
 
 def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:
     """The mechanisms of a file by name: those under `mechanisms`, or the one at the top, whose name is empty."""
-    several = top.values.get("mechanisms")
-    if several is None:
-        return _sound({"": _mechanism(reader, top, set(top.values), set())})
-    if not isinstance(several, Table) or not all(isinstance(one, Table) for one in several.values.values()):
+    tables = top.values.get("mechanisms")
+    if tables is None:
+        return _without_faulty({"": _mechanism(reader, top, set(top.values), set())})
+    if not isinstance(tables, Table) or not all(isinstance(value, Table) for value in tables.values.values()):
         reader.refusal(("mechanisms",), "{place} is no table of tables; write [mechanisms.NAME] for each")
         return {}
     shared, used = top.without("mechanisms"), set[str]()
-    made = {name: _mechanism(reader, own.over(shared), set(own.values), used) for name, own in several.values.items()}
+    mechanisms = dict[str, Mechanism | None]()
+    for name, table in tables.values.items():
+        mechanisms[name] = _mechanism(reader, table.over(shared), set(table.values), used)
     for key in shared.values.keys() - used:
         reader.refusal((key,), "{place} is not known here: no mechanism takes it")
-    return _sound(made)
+    return _without_faulty(mechanisms)
 
 
-def _sound(made: Mapping[str, Mechanism | None]) -> dict[str, Mechanism]:
-    return {name: one for name, one in made.items() if one is not None}
+def _without_faulty(mechanisms: Mapping[str, Mechanism | None]) -> dict[str, Mechanism]:
+    return {name: mechanism for name, mechanism in mechanisms.items() if mechanism is not None}
 
 
 def _mechanism(reader: Reader, table: Table, own: set[str], used: set[str]) -> Mechanism | None:
@@ -181,7 +183,7 @@ def _mechanism(reader: Reader, table: Table, own: set[str], used: set[str]) -> M
         used: to which those that it takes are added.
     """
     try:
-        maker, rest = reader.chosen(table, MECHANISMS, "Case")
+        maker, rest = reader.choose_maker(table, MECHANISMS, "Case")
     except RefusedError:
         used |= set(table.values)
         return None
@@ -190,14 +192,14 @@ def _mechanism(reader: Reader, table: Table, own: set[str], used: set[str]) -> M
     rest = rest.without(*(set(rest.values) - takes - own))
     options = _options(reader, rest, "check", CHECK)
     curve = _options(reader, rest, "limit_curve", CURVE)
-    demand = reader.attempted(lambda: _demand(reader, rest, options))
-    problem = reader.attempted(lambda: reader.made(rest.without(*SECTIONS), maker))
+    demand = reader.attempt(lambda: _demand(reader, rest, options))
+    problem = reader.attempt(lambda: reader.make(rest.without(*SECTIONS), maker))
     if problem is None:
         return None
     severe = next(iter(demand.values())) if isinstance(demand, Mapping) else demand
     ground = severe.ground if isinstance(severe, FloorSpectrum) else severe
     wall = getattr(case_of(problem), "block", None)
-    shaking = reader.attempted(lambda: shaking_of(reader, rest, wall, ground))
+    shaking = reader.attempt(lambda: shaking_of(reader, rest, wall, ground))
     return Mechanism(problem, demand, options, curve, shaking or Shaking(), table.place)
 
 
@@ -205,7 +207,7 @@ def _options(reader: Reader, table: Table, name: str, maker: Maker) -> dict[str,
     """The arguments that a table in another has, those of a function; none where something is wrong with them."""
     if name not in table.values:
         return {}
-    return reader.attempted(lambda: reader.arguments(reader.required_table(table, name), maker)) or {}
+    return reader.attempt(lambda: reader.arguments(reader.required_table(table, name), maker)) or {}
 
 
 def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand | Mapping[str, Demand] | None:
@@ -241,8 +243,8 @@ def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand 
 
 def _spectrum(reader: Reader, site: Table, table: Table) -> CodeSpectrum | PointSpectrum | FloorSpectrum:
     """The spectrum of a site, or of the floor above it that a mechanism stands on."""
-    maker, rest = reader.chosen(site, SITES, "code_spectrum")
-    ground = reader.made(rest, maker)
+    maker, rest = reader.choose_maker(site, SITES, "code_spectrum")
+    ground = reader.make(rest, maker)
     if "floor" not in table.values:
         return ground  # type: ignore[no-any-return]
-    return reader.made(reader.required_table(table, "floor"), replace(FLOOR, call=ground.at_height))  # type: ignore[no-any-return]
+    return reader.make(reader.required_table(table, "floor"), replace(FLOOR, call=ground.at_height))  # type: ignore[no-any-return]

@@ -77,7 +77,7 @@ class Reader:
             faults = dict.fromkeys(sorted(self.faults, key=lambda one: one.line or 0))
             raise AssessmentError(tuple(faults), self.name, self.language)
 
-    def made(self, table: Table, maker: Maker, given: Mapping[str, object] | None = None) -> Any:
+    def make(self, table: Table, maker: Maker, given: Mapping[str, object] | None = None) -> Any:
         """What a table stands for.
 
         Args:
@@ -117,13 +117,13 @@ class Reader:
 
     def _expanded(self, table: Table, arguments: dict[str, object]) -> dict[str, object]:
         """Sequences among arguments with the effects of what acts as several, such as a `Wedge`."""
-        wall = next((one for one in arguments.values() if isinstance(one, Block)), None)
-        found: dict[str, object] = {}
+        wall = next((value for value in arguments.values() if isinstance(value, Block)), None)
+        expanded: dict[str, object] = {}
         for name, values in arguments.items():
-            if isinstance(values, tuple) and any(isinstance(one, CombinedEffect) for one in values):
+            if isinstance(values, tuple) and any(isinstance(value, CombinedEffect) for value in values):
                 parts = [self._effects_of(*pair, wall) for pair in zip(table.values[name], values, strict=True)]
-                found[name] = tuple(effect for part in parts for effect in part)
-        return found
+                expanded[name] = tuple(effect for part in parts for effect in part)
+        return expanded
 
     def _effects_of(self, table: Table, effect: object, wall: Block | None) -> tuple[object, ...]:
         """An effect, or those that one of several stands for."""
@@ -138,7 +138,7 @@ class Reader:
             self.refuse(place, caused(place, error))
             raise RefusedError from None
 
-    def attempted(self, call: Callable[[], Object]) -> Object | None:
+    def attempt(self, call: Callable[[], Object]) -> Object | None:
         """What a function returns; None where it finds something wrong."""
         try:
             return call()
@@ -153,14 +153,14 @@ class Reader:
             raise self.refusal(table.place_of(name), it_takes, value=spelt_value(value))
         return value
 
-    def chosen(self, table: Table, kinds: Mapping[str, Makers], usual: str | None = None) -> tuple[Maker, Table]:
+    def choose_maker(self, table: Table, kinds: Mapping[str, Makers], usual: str | None = None) -> tuple[Maker, Table]:
         """The maker that `kind` and `make` of a table name, and the table without these."""
-        kind = self.named(table, "kind", list(kinds), next(iter(kinds)) if len(kinds) == 1 else usual)
+        kind = self.known_name(table, "kind", list(kinds), next(iter(kinds)) if len(kinds) == 1 else usual)
         makers = kinds[kind]
-        make = self.named(table, "make", [name or kind for name in makers], USUAL_MAKE.get(kind, kind))
+        make = self.known_name(table, "make", [name or kind for name in makers], USUAL_MAKE.get(kind, kind))
         return makers["" if make == kind else make], table.without(*OWN_KEYS)
 
-    def named(self, table: Table, name: str, known: Sequence[str], usual: str | None) -> str:
+    def known_name(self, table: Table, name: str, known: Sequence[str], usual: str | None) -> str:
         """A name that a key of a table has among those that are known."""
         value = table.values.get(name, usual)
         if value is None:
@@ -246,7 +246,7 @@ class Reader:
             item = fitting[0][0 if fitting[0][-1] is ... else i]
             at = one.place if isinstance(one, Table) else (*place, i)
             try:
-                found.append(self._of_kinds(*parted(item, within), one, at))
+                found.append(self._of_kinds(*kinds_and_range(item, within), one, at))
             except RefusedError:
                 wrong = True
         if wrong:
@@ -257,11 +257,11 @@ class Reader:
         """What a table within another stands for: an object of one of some classes, or texts by name."""
         classes = classes_of(kinds)
         if classes:
-            maker, rest = self.chosen(table, {name: makers_of(kind) for name, kind in classes.items()})
-            return self.made(rest, maker)
+            maker, rest = self.choose_maker(table, {name: makers_of(kind) for name, kind in classes.items()})
+            return self.make(rest, maker)
         mapped = next((kind for kind in kinds if get_origin(kind) is not None and is_mapping(kind)), None)
         if mapped is not None:
-            of, within = parted(get_args(mapped)[1], None)
+            of, within = kinds_and_range(get_args(mapped)[1], None)
             return {name: self._of_kinds(of, within, one, table.place_of(name)) for name, one in table.values.items()}
         raise self._wrong(table.place, table, kinds, None)
 
@@ -297,8 +297,8 @@ def caused(place: Place, error: Exception, value: object = None, within: Within 
         within: its declared range.
     """
     known = f" = {brief(value)}" if isinstance(value, str | int | float) else ""
-    of = Message("; the valid range is {range}", range=spelt_range(within)) if within else ""
-    known = Message("{value}{of}", value=known, of=of)
+    range_text = Message("; the valid range is {range}", range=spelt_range(within)) if within else ""
+    known = Message("{value}{of}", value=known, of=range_text)
     return Message("{place}: {cause}", place=spelt_place(place), cause=reason(error), known=known)
 
 
@@ -325,7 +325,7 @@ def _named_in(message: str, table: Table, names: Mapping[str, str]) -> Place:
     return place
 
 
-def parted(hint: Hint, within: Within | None) -> tuple[tuple[Hint, ...], Within | None]:
+def kinds_and_range(hint: Hint, within: Within | None) -> tuple[tuple[Hint, ...], Within | None]:
     """The types of a hint, and the range of its numbers."""
     key = Key("", hint, None, "")
     return key.kinds, key.within or within
@@ -363,24 +363,24 @@ def one_of(known: Sequence[str]) -> Message:
 
 def spelt_kinds(kinds: tuple[Hint, ...], within: Within | None) -> str:
     """What an argument of some types takes, in words."""
-    found: list[str] = []
+    texts: list[str] = []
     if any(kind in NUMERIC or get_origin(kind) in NUMERIC for kind in kinds):
-        of = Message(" of {range}", range=spelt_range(within)) if within and math.isfinite(within.high) else ""
+        each = Message(" of {range}", range=spelt_range(within)) if within and math.isfinite(within.high) else ""
         example = examples_of(within.unit) if within and within.unit else ""
         unit = Message(", or a text such as {example}", example=example) if example else ""
-        found.append(Message("a number{of}{unit}", of=of, unit=unit))
-    found += [Message("true or false")] if bool in kinds else []
+        texts.append(Message("a number{of}{unit}", of=each, unit=unit))
+    texts += [Message("true or false")] if bool in kinds else []
     if known := [choice for kind in kinds for choice in choices_of(kind)]:
-        found.append(Message("one of {known}", known=", ".join(known)))
+        texts.append(Message("one of {known}", known=", ".join(known)))
     elif str in kinds:
-        found.append(Message("a text"))
+        texts.append(Message("a text"))
     if classes := classes_of(kinds):
-        found.append(Message("a table of {names}", names=named(list(classes))))
+        texts.append(Message("a table of {names}", names=named(list(classes))))
     for kind in kinds:
         if (items := items_of(kind)) is not None:
-            of = spelt_kinds(parted(items[0], within)[0], None)
-            several = Message("a list of {count}, each {of}", count=len(items), of=of)
-            found.append(Message("a list, each {of}", of=of) if items[-1] is ... else several)
+            each = spelt_kinds(kinds_and_range(items[0], within)[0], None)
+            several = Message("a list of {count}, each {of}", count=len(items), of=each)
+            texts.append(Message("a list, each {of}", of=each) if items[-1] is ... else several)
         elif is_mapping(kind):
-            found.append(Message("a table of texts"))
-    return alternatively(found or [Message("nothing that a file can have")])
+            texts.append(Message("a table of texts"))
+    return alternatively(texts or [Message("nothing that a file can have")])

@@ -57,7 +57,8 @@ class Shaking:
     @property
     def motions(self) -> tuple[GroundMotion, ...]:
         """The motion of each run, in either polarity."""
-        return tuple(one for record in self.records for one in (record.polarities if self.polarities else (record,)))
+        pairs = [record.polarities if self.polarities else (record,) for record in self.records]
+        return tuple(motion for pair in pairs for motion in pair)
 
 
 @cache
@@ -82,33 +83,33 @@ def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: objec
         wall: its wall, None of masonry.
         spectrum: that of the site, to which records are scaled.
     """
-    found: dict[str, Any] = {"solver": usual_solver(wall)}
+    values: dict[str, Any] = {"solver": usual_solver(wall)}
     if not table.values.keys() & {"restitution", "contacts", "records", "run"}:
         return Shaking(solver=usual_solver(wall))
     if "restitution" in table.values or wall is not None:
-        found["e"] = _of_wall(reader, table, "restitution", makers_of(Restitution), wall)
+        values["e"] = _of_wall(reader, table, "restitution", makers_of(Restitution), wall)
     if "contacts" in table.values:
-        given = {} if found.get("e") is None else {"e": found["e"]}
-        found["contacts"] = _of_wall(reader, table, "contacts", makers_of(Contacts), wall, given)
+        arguments = {} if values.get("e") is None else {"e": values["e"]}
+        values["contacts"] = _of_wall(reader, table, "contacts", makers_of(Contacts), wall, arguments)
     if "run" in table.values:
-        found |= _run(reader, reader.required_table(table, "run"), wall)
+        values |= _run(reader, reader.required_table(table, "run"), wall)
     if "dynamic_check" in table.values:
-        found["dynamic"] = reader.arguments(reader.required_table(table, "dynamic_check"), DYNAMIC)
+        values["dynamic"] = reader.arguments(reader.required_table(table, "dynamic_check"), DYNAMIC)
     if "records" in table.values:
-        found["records"] = _records(reader, table, spectrum)
-    return Shaking(**found)
+        values["records"] = _records(reader, table, spectrum)
+    return Shaking(**values)
 
 
 def _of_wall(
     reader: Reader, table: Table, name: str, makers: Makers, wall: Block | None, given: Mapping[str, Any] | None = None
 ) -> Any:
     """Restitution or contacts of a wall; the usual ones where the file has no table of them."""
-    own = reader.required_table(table, name) if name in table.values else Table((*table.place, name))
+    own_table = reader.required_table(table, name) if name in table.values else Table((*table.place, name))
     if wall is None:
-        raise reader.refusal(own.place, "{place} is of a wall, and masonry has joints; leave it out")
-    maker, rest = reader.chosen(own, {next(iter(makers.values())).call.__name__: makers})
+        raise reader.refusal(own_table.place, "{place} is of a wall, and masonry has joints; leave it out")
+    maker, rest = reader.choose_maker(own_table, {next(iter(makers.values())).call.__name__: makers})
     arguments = {"wall": wall, **(given or {})}
-    return reader.made(rest, maker, {key: arguments[key] for key in maker.keys if key in arguments})
+    return reader.make(rest, maker, {key: arguments[key] for key in maker.keys if key in arguments})
 
 
 def usual_solver(wall: Block | None) -> str:
@@ -118,55 +119,55 @@ def usual_solver(wall: Block | None) -> str:
 
 def _run(reader: Reader, table: Table, wall: Block | None) -> dict[str, object]:
     """The solver and its options."""
-    solver = reader.named(table, "solver", SOLVERS, usual_solver(wall))
+    solver = reader.known_name(table, "solver", SOLVERS, usual_solver(wall))
     options = reader.arguments(table, run_maker(solver))
     options.pop("solver", None)
-    own = {name: options.pop(name) for name in ("polarities",) if name in options}
-    return {"solver": solver, "options": options} | own
+    polarities = {name: options.pop(name) for name in ("polarities",) if name in options}
+    return {"solver": solver, "options": options} | polarities
 
 
 def _records(reader: Reader, table: Table, spectrum: object) -> tuple[GroundMotion, ...]:
     """The horizontal motions of the records, scaled to the spectrum, and on the floor where there is one."""
     value = table.values["records"]
     tables = value if isinstance(value, list) else [reader.required_table(table, "records")]
-    found: list[GroundMotion] = []
-    for one in tables:
-        if not isinstance(one, Table):
+    motions: list[GroundMotion] = []
+    for own_table in tables:
+        if not isinstance(own_table, Table):
             raise reader.refusal(table.place_of("records"), "{place} is no table and no list of tables")
-        records = _read(reader, one.without("scaled_to"))
-        if "scaled_to" in one.values:
-            given = {"spectrum": _required(reader, one, spectrum)}
+        records = _records_of_table(reader, own_table.without("scaled_to"))
+        if "scaled_to" in own_table.values:
+            arguments = {"spectrum": _required_spectrum(reader, own_table, spectrum)}
             maker = replace(SCALED, call=records.scaled_to)
-            records = reader.made(reader.required_table(one, "scaled_to"), maker, given)
-        found += records.horizontal
+            records = reader.make(reader.required_table(own_table, "scaled_to"), maker, arguments)
+        motions += records.horizontal
     if "floor" not in table.values:
-        return tuple(found)
+        return tuple(motions)
     floor = reader.required_table(table, "floor")
     through = maker_of(GroundMotion.through_building).without("self")
-    return tuple(reader.made(floor, replace(through, call=motion.through_building)) for motion in found)
+    return tuple(reader.make(floor, replace(through, call=motion.through_building)) for motion in motions)
 
 
-def _required(reader: Reader, table: Table, spectrum: object) -> SpectrumOfCode:
+def _required_spectrum(reader: Reader, table: Table, spectrum: object) -> SpectrumOfCode:
     """The spectrum that records are scaled to."""
     if not isinstance(spectrum, SpectrumOfCode):
         raise reader.refusal(table.place_of("scaled_to"), "{place} needs a [site], to scale to")
     return spectrum
 
 
-def _read(reader: Reader, table: Table) -> RecordSet:
+def _records_of_table(reader: Reader, table: Table) -> RecordSet:
     """The records of a table. One that makes a single motion makes one for each value where a key that takes a number
     has a list, as of seeds."""
-    maker, rest = reader.chosen(table, RECORDS, "records_in")
-    many = {
+    maker, rest = reader.choose_maker(table, RECORDS, "records_in")
+    lists = {
         name: value
         for name, value in rest.values.items()
         if isinstance(value, list) and name in maker.keys and set(maker.keys[name].kinds) <= {int, float}
     }
-    if not many:
-        made = reader.made(rest, maker)
-        return made if isinstance(made, RecordSet) else RecordSet({made.name: (made,)})
-    found = RecordSet()
-    for values in product(*many.values()):
-        motion = reader.made(replace(rest, values=rest.values | dict(zip(many, values, strict=True))), maker)
-        found[f"{len(found)}: {motion.name}"] = (motion,)
-    return found
+    if not lists:
+        records = reader.make(rest, maker)
+        return records if isinstance(records, RecordSet) else RecordSet({records.name: (records,)})
+    records_by_value = RecordSet()
+    for values in product(*lists.values()):
+        motion = reader.make(replace(rest, values=rest.values | dict(zip(lists, values, strict=True))), maker)
+        records_by_value[f"{len(records_by_value)}: {motion.name}"] = (motion,)
+    return records_by_value

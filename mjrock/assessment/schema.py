@@ -29,7 +29,7 @@ from .declarations import (
     makers_of,
 )
 from .mechanisms import CHECK, CURVE, FLOOR, MECHANISMS, SECTIONS, SITES
-from .reading import NUMERIC, is_mapping, parted
+from .reading import NUMERIC, is_mapping, kinds_and_range
 from .running import DYNAMIC, RECORDS, SCALED, SOLVERS, run_maker
 from .sharing import Schema, shared
 
@@ -101,20 +101,20 @@ class SchemaWriter:
         """The tables of a mechanism, of which a partial one shares some with others."""
         mark = "?" if partial else ""
         if f"[site]{mark}" not in self.parts:
-            self.parts |= {f"[{name}]{mark}": one for name, one in self._sections(partial).items()}
+            self.parts |= {f"[{name}]{mark}": table for name, table in self._sections(partial).items()}
         sections: Schema = {name: {"$ref": f"#/$defs/[{name}]{mark}"} for name in SECTIONS}
         if partial:
-            sections = {name: _or_taken_away(one) for name, one in sections.items()}
+            sections = {name: _or_taken_away(table) for name, table in sections.items()}
         kinds = []
         for kind, makers in MECHANISMS.items():
-            one = self._table(makers[""], partial=partial)
-            if partial and "effects" in one["properties"]:
-                one["properties"]["effects"] = _or_taken_away(one["properties"]["effects"])
+            table = self._table(makers[""], partial=partial)
+            if partial and "effects" in table["properties"]:
+                table["properties"]["effects"] = _or_taken_away(table["properties"]["effects"])
             named = {"kind": {"const": kind, "default": "Case"}} if kind == "Case" else {"kind": {"const": kind}}
             needed = [] if partial or kind == "Case" else ["kind"]
-            one["properties"] = named | one["properties"] | sections | once
-            one["required"] = needed + one.pop("required", [])
-            kinds.append(one)
+            table["properties"] = named | table["properties"] | sections | once
+            table["required"] = needed + table.pop("required", [])
+            kinds.append(table)
         if not partial:
             return {"oneOf": kinds}
         return {"type": "object", "anyOf": kinds}
@@ -171,20 +171,20 @@ class SchemaWriter:
         """One class or constructor, as one of the definitions."""
         usual = USUAL_MAKE.get(kind, "" if make == "" else kind)
         name = f"{kind}.{make}" if make else kind
-        full = name + ("?" if partial else "") + ("" if named else "!")
-        if full not in self.parts:
-            self.parts[full] = {}  # of a class within itself
-            one = self._table(maker, partial=partial)
-            given = {"kind": {"const": kind} | ({} if named else {"default": kind})}
+        key = name + ("?" if partial else "") + ("" if named else "!")
+        if key not in self.parts:
+            self.parts[key] = {}  # of a class within itself
+            table = self._table(maker, partial=partial)
+            names = {"kind": {"const": kind} | ({} if named else {"default": kind})}
             needed = ["kind"] if named else []
             if make != usual or make:
-                given["make"] = {"const": make or kind} | ({"default": make} if make == usual else {})
+                names["make"] = {"const": make or kind} | ({"default": make} if make == usual else {})
                 needed += [] if make == usual else ["make"]
-            one["properties"] = given | one["properties"]
-            if needed + one.get("required", []):
-                one["required"] = needed + one.get("required", [])
-            self.parts[full] = {"title": name} | one
-        return {"$ref": f"#/$defs/{full}"}
+            table["properties"] = names | table["properties"]
+            if needed + table.get("required", []):
+                table["required"] = needed + table.get("required", [])
+            self.parts[key] = {"title": name} | table
+        return {"$ref": f"#/$defs/{key}"}
 
     def of_key(self, key: Key, partial: bool = False) -> Schema:
         """The schema of a key; empty for one that a file cannot have."""
@@ -218,9 +218,8 @@ class SchemaWriter:
             if (items := items_of(kind)) is not None:
                 schemas.append(self._list(items, within))
             elif is_mapping(kind):
-                schemas.append(
-                    {"type": "object", "additionalProperties": self._of_kinds(*parted(get_args(kind)[1], None))}
-                )
+                values = self._of_kinds(*kinds_and_range(get_args(kind)[1], None))
+                schemas.append({"type": "object", "additionalProperties": values})
         if classes := classes_of(kinds):
             schemas.append(self._kinds({name: makers_of(kind) for name, kind in classes.items()}, partial=partial))
         schemas = [one for i, one in enumerate(schemas) if one and one not in schemas[:i]]
@@ -229,10 +228,15 @@ class SchemaWriter:
     def _list(self, items: tuple[Hint, ...], within: Within | None) -> Schema:
         """The schema of a list."""
         if items[-1] is ...:
-            of = self._of_kinds(*parted(items[0], within))
-            return {"type": "array", "items": of} if of else {}
-        each = [self._of_kinds(*parted(one, within)) for one in items]
-        return {"type": "array", "prefixItems": each, "minItems": len(each), "maxItems": len(each)}
+            item_schema = self._of_kinds(*kinds_and_range(items[0], within))
+            return {"type": "array", "items": item_schema} if item_schema else {}
+        item_schemas = [self._of_kinds(*kinds_and_range(item, within)) for item in items]
+        return {
+            "type": "array",
+            "prefixItems": item_schemas,
+            "minItems": len(item_schemas),
+            "maxItems": len(item_schemas),
+        }
 
 
 def _or_taken_away(one: Schema) -> Schema:

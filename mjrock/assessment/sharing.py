@@ -50,7 +50,7 @@ def shared(whole: Schema) -> Schema:
 
 def _beyond(tables: Schema, name: str) -> Schema:
     """A definition; where there is the same table with no key that it needs, of a mechanism that shares keys with
-    others, as what it asks for beyond that one."""
+    others, as what it requires beyond that one."""
     table: Schema = tables[name]
     free = f"{name.rstrip('?!')}?{'' if name.startswith('[') else '!'}"
     keys, own = tables.get(free, {}).get("properties", {}), table.get("properties", {})

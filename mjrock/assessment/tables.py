@@ -62,11 +62,11 @@ class AssessmentError(ValueError):
     def lines(self) -> list[str]:
         """Each fault on a line, with the file and its line."""
         words = Words(self.language)
-        found = []
-        for one in self.faults:
-            line = f"{self.name}:{one.line}" if self.name else words.message(Message("line {line}", line=one.line))
-            found.append(": ".join(filter(None, (line if one.line else self.name, words.message(one.message)))))
-        return found
+        lines = []
+        for fault in self.faults:
+            line = f"{self.name}:{fault.line}" if self.name else words.message(Message("line {line}", line=fault.line))
+            lines.append(": ".join(filter(None, (line if fault.line else self.name, words.message(fault.message)))))
+        return lines
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.faults, self.name, self.language)
@@ -98,14 +98,14 @@ class Table:
         """The table with what it shares with others: what it has itself takes the place of that, and its effects come
         after shared ones. False takes a shared table away."""
         values, places = dict(shared.values), dict(shared.places)
-        for name, own in self.values.items():
-            other = values.get(name)
-            if isinstance(own, Table) and isinstance(other, Table):
-                own = own.over(other)
-            elif name == "effects" and isinstance(own, list) and isinstance(other, list):
-                own = [*other, *own]
-            values[name], places[name] = own, self.place_of(name)
-            if own is False and isinstance(other, Table | list):
+        for name, own_value in self.values.items():
+            shared_value = values.get(name)
+            if isinstance(own_value, Table) and isinstance(shared_value, Table):
+                own_value = own_value.over(shared_value)
+            elif name == "effects" and isinstance(own_value, list) and isinstance(shared_value, list):
+                own_value = [*shared_value, *own_value]
+            values[name], places[name] = own_value, self.place_of(name)
+            if own_value is False and isinstance(shared_value, Table | list):
                 del values[name]
         return Table(self.place, values, places)
 
@@ -135,12 +135,12 @@ def parsed(text: str) -> dict[str, Any]:
         AssessmentError: with the line, for a text that is not TOML, is too long, or is nested too deeply.
     """
     if len(text) > MOST_CHARACTERS:
-        long = Message("has {count} characters; the valid range is 0 to {most}", count=len(text), most=MOST_CHARACTERS)
-        raise AssessmentError((Fault((), long),))
+        fault = Message("has {count} characters; the valid range is 0 to {most}", count=len(text), most=MOST_CHARACTERS)
+        raise AssessmentError((Fault((), fault),))
     try:
-        found = tomllib.loads(text)
-        if not is_deep(found):
-            return found
+        tables = tomllib.loads(text)
+        if not is_deep(tables):
+            return tables
         raise RecursionError
     except tomllib.TOMLDecodeError as error:
         place = ERROR_PLACE.search(str(error))
@@ -150,8 +150,8 @@ def parsed(text: str) -> dict[str, Any]:
             cause = Message("a number has a comma; the decimal mark is a point, as in 0.5")
         raise AssessmentError((Fault((), Message("is not TOML: {cause}", cause=cause), line),)) from None
     except RecursionError:
-        deep = Message("is nested too deeply; a file has some five levels")
-        raise AssessmentError((Fault((), deep, 1),)) from None
+        fault = Message("is nested too deeply; a file has some five levels")
+        raise AssessmentError((Fault((), fault, 1),)) from None
 
 
 def is_deep(document: Document) -> bool:
@@ -164,7 +164,7 @@ def is_deep(document: Document) -> bool:
 
 
 @lru_cache(maxsize=32)
-def _so_far(text: str, count: int) -> dict[str, Any]:
+def _first_tables(text: str, count: int) -> dict[str, Any]:
     """The tables of the first lines of a text that is valid TOML, without those at the end that are no TOML even with
     what may close them."""
     for end in range(count, 0, -1):
@@ -189,7 +189,8 @@ def line_of(place: Place, text: str) -> int | None:
     """The line of a key in a text that is valid TOML, from 1 on, or of the table that it would be in: the first line up
     to which the text has it. None where it has neither."""
     count = text.count("\n") + 1
-    there = next((place[:end] for end in range(len(place), 0, -1) if _has(_so_far(text, count), place[:end])), None)
-    if there is None:
+    tables, ends = _first_tables(text, count), range(len(place), 0, -1)
+    known_place = next((place[:end] for end in ends if _has(tables, place[:end])), None)
+    if known_place is None:
         return None
-    return bisect_left(range(count), True, lo=1, key=lambda lines: _has(_so_far(text, lines), there))
+    return bisect_left(range(count), True, lo=1, key=lambda lines: _has(_first_tables(text, lines), known_place))

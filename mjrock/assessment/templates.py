@@ -37,11 +37,12 @@ def seeds() -> dict[str, dict[str, Any]]:
 
 def merged(shared: Document, own: Document) -> dict[str, object]:
     """Tables with what they share, table by table."""
-    made = dict(own)
+    tables = dict(own)
     for name, value in shared.items():
-        mine = own.get(name, {})
-        made[name] = merged(value, mine) if isinstance(value, Mapping) and isinstance(mine, Mapping) else value
-    return made
+        own_table = own.get(name, {})
+        both_tables = isinstance(value, Mapping) and isinstance(own_table, Mapping)
+        tables[name] = merged(value, own_table) if both_tables else value
+    return tables
 
 
 class Writer:
@@ -62,26 +63,26 @@ class Writer:
         """What a value may be, each without references."""
         if "$ref" in node:
             rest = {key: value for key, value in node.items() if key != "$ref"}
-            of = self.schema["$defs"][node["$ref"].removeprefix("#/$defs/")]
-            return [{**one, **rest} for one in self.alternatives(of)]
+            definition = self.schema["$defs"][node["$ref"].removeprefix("#/$defs/")]
+            return [{**one, **rest} for one in self.alternatives(definition)]
         several = node.get("anyOf") or node.get("oneOf")
         return [one for each in several for one in self.alternatives(each)] if several else [node]
 
     def fitting(self, node: Part, value: Document) -> Part:
         """The alternative that a table is of, by its `kind` and `make`."""
-        for one in self.alternatives(node):
-            named = [one.get("properties", {}).get(key, {}) for key in ("kind", "make")]
-            given = [value.get(key, part.get("default")) for key, part in zip(("kind", "make"), named, strict=True)]
-            if one.get("type") == "object" and given == [part.get("const") for part in named]:
-                return one
+        for alternative in self.alternatives(node):
+            parts = [alternative.get("properties", {}).get(key, {}) for key in ("kind", "make")]
+            given = [value.get(key, part.get("default")) for key, part in zip(("kind", "make"), parts, strict=True)]
+            if alternative.get("type") == "object" and given == [part.get("const") for part in parts]:
+                return alternative
         return {}
 
     def table(self, node: Part, value: Document, path: str) -> Iterator[str]:
         """The lines of a table: its keys, those that may be left out, and the tables in it."""
-        of = self.fitting(node, value)
-        keys: Part = of.get("properties", {})
-        again = of.get("title", path) in self.explained
-        self.explained.add(of.get("title", path))
+        schema = self.fitting(node, value)
+        keys: Part = schema.get("properties", {})
+        is_explained = schema.get("title", path) in self.explained
+        self.explained.add(schema.get("title", path))
         below = {name: value[name] for name in sorted(value, key=[*keys, *value].index) if is_table(value[name])}
         for name, one in value.items():
             if name not in below:
@@ -90,30 +91,30 @@ class Writer:
             common = [one.get("properties", {}).keys() for one in self.alternatives(node)]
             keys = {name: key for name, key in keys.items() if all(name in one for one in common)}
         for name, key in keys.items():
-            if not again and name not in value and "const" not in key and not self.holds_tables(key):
+            if not is_explained and name not in value and "const" not in key and not self.holds_tables(key):
                 yield from explained(f"#{name} = {default_of(key)}".rstrip(), key)
         for name, one in below.items():
-            key = keys.get(name) or of.get("additionalProperties") or {}
+            key = keys.get(name) or schema.get("additionalProperties") or {}
             is_alike = key.keys() <= {"type", "description"}  # of a limit state: what the site has too
-            yield from self.below(of if is_alike else key, one, f"{path}.{toml_key(name)}".lstrip("."))
-        left = [name for name, key in keys.items() if name not in value and self.holds_tables(key)]
-        if left and not again:
+            yield from self.below(schema if is_alike else key, one, f"{path}.{toml_key(name)}".lstrip("."))
+        further = [name for name, key in keys.items() if name not in value and self.holds_tables(key)]
+        if further and not is_explained:
             where = f"[{path}]" if path else "this file"
-            yield from ("", *comment(f"Further tables of {where}: {', '.join(left)}. See `mjrock schema`."))
+            yield from ("", *comment(f"Further tables of {where}: {', '.join(further)}. See `mjrock schema`."))
 
     def below(self, node: Part, value: Any, path: str) -> Iterator[str]:
         """The lines of a table in another, or of several in a list."""
         if isinstance(value, Mapping):
-            of = self.fitting(node, value)
+            schema = self.fitting(node, value)
             if not value or not all(map(is_table, value.values())):
-                yield from ("", *comment(of.get("description", node.get("description", ""))), f"[{path}]")
+                yield from ("", *comment(schema.get("description", node.get("description", ""))), f"[{path}]")
             yield from self.table(node, value, path)
             return
         items = [item for one in self.alternatives(node) for item in [one.get("items")] if item]
         for one in value:
-            of = self.fitting({"anyOf": items}, one)
-            yield from ("", *comment(of.get("description", "")), f"[[{path}]]")
-            yield from self.table(of, one, path)
+            schema = self.fitting({"anyOf": items}, one)
+            yield from ("", *comment(schema.get("description", "")), f"[[{path}]]")
+            yield from self.table(schema, one, path)
 
     def holds_tables(self, node: Part) -> bool:
         """Whether a key is a table or a list of tables, whatever it is."""
@@ -138,9 +139,9 @@ def explained(line: str, key: Part) -> Iterator[str]:
     low, high, unit = key.get("minimum"), key.get("maximum"), key.get("unit", "")
     if low is not None and high is not None and " to " not in text:
         text = f"{text} {low:g} to {high:g} {unit}".strip()
-    beside = f"{line:<32}  # {text}" if text else line
-    if len(beside) <= TEMPLATE_WIDTH:
-        yield beside
+    with_text = f"{line:<32}  # {text}" if text else line
+    if len(with_text) <= TEMPLATE_WIDTH:
+        yield with_text
     else:
         yield from (*comment(text), line)
 
@@ -152,16 +153,16 @@ def comment(text: str) -> list[str]:
 
 def template(name: str) -> str:
     """The text of a template."""
-    return written(seeds()[name], whole_schema())
+    return template_text(seeds()[name], whole_schema())
 
 
 def templates() -> dict[str, str]:
     """The texts of all templates by name."""
     schema = whole_schema()
-    return {name: written(values, schema) for name, values in seeds().items()}
+    return {name: template_text(values, schema) for name, values in seeds().items()}
 
 
-def written(values: dict[str, Any], schema: Part) -> str:
+def template_text(values: dict[str, Any], schema: Part) -> str:
     """Values as the text of a template."""
     head = [*comment(values.pop("title")), "#", *(f"# {line}" for line in TEMPLATE_HEAD.splitlines()), ""]
     root = schema["then" if "mechanisms" in values else "else"]

@@ -9,29 +9,21 @@ from collections.abc import Mapping, Sequence
 from ..assessment.assessment import Assessment
 from ..command_line import Answer, Status, complain, parser_of, ruled
 from ..contacts.files import aligned
+from ..reporting import verdicts
 from ..reporting.texts import FOUND, Words
-from ..reporting.verdicts import (
-    CONDITION_COLUMNS,
-    Mechanism,
-    condition_cells,
-    method_sentences,
-    ranked,
-    required_checks,
-    sentence_of,
-)
 from ..study.loading.mechanism_check import MechanismCheck
 from .assessment_file import MENDABLE, add_file, assessment_of_file, named_checks
 
 
-def table_of(mechanisms: Sequence[Mechanism], words: Words) -> str:
+def table_of(mechanisms: Sequence[verdicts.Mechanism], words: Words) -> str:
     """The conditions of all mechanisms, that with the least ratio first, and what governs."""
-    ordered = ranked(mechanisms)
-    rows = [[words(f"verdict_{head}") for head in CONDITION_COLUMNS]]
+    ordered = verdicts.ranked(mechanisms)
+    rows = [[words(f"verdict_{head}") for head in verdicts.CONDITION_COLUMNS]]
     for mechanism in ordered:
         for i, verdict in enumerate(mechanism.verdicts):
-            rows.append([mechanism.name * (i == 0), *condition_cells(verdict, words)])
-    sentence = sentence_of(ordered[0], "lead_governs" if ordered[1:] else "lead_alone", words)
-    sentences = [sentence.start, sentence.end, *method_sentences(ordered, words)]
+            rows.append([mechanism.name * (i == 0), *verdicts.condition_cells(verdict, words)])
+    sentence = verdicts.sentence_of(ordered[0], "lead_governs" if ordered[1:] else "lead_alone", words)
+    sentences = [sentence.start, sentence.end, *verdicts.method_sentences(ordered, words)]
     return "\n".join([*ruled(rows, "<<<>>><<"), "", " ".join(sentences)])
 
 
@@ -57,12 +49,10 @@ def check_for_programs(name: str, file: str, check: MechanismCheck) -> dict[str,
     def number(value: float) -> float | None:
         return float(value) if math.isfinite(value) else None
 
-    conditions = [
-        verdict._asdict()
-        | {key: number(getattr(verdict, key)) for key in ("demand", "capacity", "ratio")}
-        | {"holds": verdict.holds}
-        for verdict in check.verdicts
-    ]
+    conditions = []
+    for verdict in check.verdicts:
+        numbers = {key: number(getattr(verdict, key)) for key in ("demand", "capacity", "ratio")}
+        conditions.append(verdict._asdict() | numbers | {"holds": verdict.holds})
     steps = [step._asdict() | {"value": number(step.value)} for step in check.steps]
     holds = all(verdict.holds for verdict in check.verdicts)
     return {"file": file, "mechanism": name, "holds": holds, "conditions": conditions, "steps": steps}
@@ -77,7 +67,7 @@ def verdict_on(assessment: Assessment, checks: Mapping[str, MechanismCheck], ste
         steps: whether every step follows.
     """
     words = Words(assessment.language)
-    mechanisms = required_checks(named_checks(checks, words), "")
+    mechanisms = verdicts.required_checks(named_checks(checks, words), "")
     lines = [assessment.name, table_of(mechanisms, words)]
     for mechanism in mechanisms if steps else ():
         if mechanism.kinematic is not None:

@@ -40,19 +40,17 @@ def comparison_figure(case: Case, responses: Sequence[Response], title: str) -> 
         title: of the figure.
     """
     figure = comparison(responses, title)
-    rotation_axes, energy_axes = figure.axes
+    upper, lower = figure.axes
     theory = responses[0]
     assert theory.rocking is not None
     moving_samples = np.flatnonzero(np.abs(theory.theta) > 1e-3 * theory.of_wall[0].wall.alpha)
-    energy_axes.set_xlim(0, min(theory.t[-1], 1.3 * theory.t[moving_samples[-1]]))
+    lower.set_xlim(0, min(theory.t[-1], 1.3 * theory.t[moving_samples[-1]]))
     for impact in theory.impacts:
         if impact.energy_before > LEAST_ENERGY_STEP * theory.energy[0]:
-            place = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
+            at = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
             text = f"$|e|$ = {abs(impact.restitution):.2f}"
-            energy_axes.annotate(
-                text, place, (6, 0), textcoords="offset points", va="center", fontsize=8, color="0.2", zorder=6
-            )
-    inset = rotation_axes.inset_axes((0.72, 0.16, 0.28, 0.82))
+            lower.annotate(text, at, (6, 0), textcoords="offset points", va="center", fontsize=8, color="0.2", zorder=6)
+    inset = upper.inset_axes((0.72, 0.16, 0.28, 0.82))
     section(inset, case)
     inset.axis("off")
     return figure

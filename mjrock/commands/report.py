@@ -29,8 +29,6 @@ def answer(argv: Sequence[str]) -> Answer:
     if path.suffix.lower() == ".pdf":
         pdf_writer()  # before anything is run
     assessment = assessment_of_file(args.file, args.language)
-    runs_by_name = {} if args.no_runs else runs_of(assessment)
-    responses = {
-        name: [run.solve() for run in counted(runs, name or "runs", "runs")] for name, runs in runs_by_name.items()
-    }
+    analyses = {} if args.no_runs else runs_of(assessment)
+    responses = {key: [run.solve() for run in counted(runs, key or "runs", "runs")] for key, runs in analyses.items()}
     return Answer(f"written: {assessment.report(path, responses or None)}")

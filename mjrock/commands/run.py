@@ -95,12 +95,10 @@ def completed_runs(
     rows_by_name: Rows = {}
     for of_walls in (True, False):
         chosen = {name: analyses for name, analyses in runs.items() if assessment.mechanisms[name].is_wall is of_walls}
-        analyses_in_order = [run for analyses in chosen.values() for run in analyses]
+        ordered = [run for analyses in chosen.values() for run in analyses]
         histories = None if of_walls else histories_of(store)
-        unread_rows = iter(
-            completed(analyses_in_order, store, workers=workers, histories=histories) if analyses_in_order else ()
-        )
-        rows_by_name |= {name: [next(unread_rows) for _ in analyses] for name, analyses in chosen.items()}
+        rows = iter(completed(ordered, store, workers=workers, histories=histories) if ordered else ())
+        rows_by_name |= {name: [next(rows) for _ in analyses] for name, analyses in chosen.items()}
     return rows_by_name
 
 

@@ -541,5 +541,5 @@ def _row(k: float, c: float, mass: float, inverse_weight: float, step: EngineSte
             "lower the timestep"
         )
     if inertia > inertia_of(WITHIN[1], inverse_weight):
-        raise ValueError(f"newmark_beta = {newmark_beta:g} asks for more inertia than MuJoCo represents; lower it")
+        raise ValueError(f"newmark_beta = {newmark_beta:g} requires more inertia than MuJoCo represents; lower it")
     return dashpot, inertia_of(WITHIN[0], inverse_weight) if step.staged and sound else inertia

@@ -62,7 +62,7 @@ def points_of(scene: Scene, method: Method = METHOD) -> Points:
     """The contacts of a scene.
 
     Friction of a base that holds is a number that holds it, and no law of sliding. A joint that bears weight, and whose
-    dashpot is weaker than the stiffest vibration, has it centred where the method or the scene asks for that.
+    dashpot is weaker than the stiffest vibration, has it centred where the method or the scene requires that.
     """
     weight = inverse_weights(scene)
     held = method.held_masses * scene.freedom.translations / (3 * weight)

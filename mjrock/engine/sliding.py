@@ -1,6 +1,6 @@
 """Sliding: contacts that slide obey Coulomb's law, which the rows of the engine alone do not.
 
-A friction row of MuJoCo asks its slip to stop within the step. While the contact slides on, the cone answers with a
+A friction row of MuJoCo requires its slip to stop within the step. While the contact slides on, the cone answers with a
 normal force on top of the contact law, mu m_n |v_t| / h, with m_n the inertia of the normal row and v_t the slip. With
 m_n = h c / 2 + beta h^2 k it presses the bodies apart by mu (c / 2 + beta h k) |v_t|, which no short step removes.
 

@@ -47,13 +47,13 @@ class WallFilm:
 
     def beside(self, response: Response) -> list[Drawing]:
         """The motion of its base, its rotation and the forces of its ties over time, each on an Axes of its own."""
-        drawn: list[Drawing] = []
+        drawings: list[Drawing] = []
         if self.case.shaken:
-            drawn.append(lambda ax: acceleration(ax, self.case, float(response.t[-1])))
-        drawn.append(lambda ax: rotation(ax, [response]))
+            drawings.append(lambda ax: acceleration(ax, self.case, float(response.t[-1])))
+        drawings.append(lambda ax: rotation(ax, [response]))
         if response.ties:
-            drawn.append(lambda ax: ties(ax, [response]))
-        return drawn
+            drawings.append(lambda ax: ties(ax, [response]))
+        return drawings
 
 
 @dataclass(frozen=True)
@@ -128,11 +128,11 @@ class Stage:
 
     def keep_colours(self, update: Update, count: int) -> None:
         """Take the colours of all pictures from some of `count` frames, the first and the last among them."""
-        taken = []
+        pictures = []
         for frame in sorted(set(np.linspace(0, count - 1, SAMPLED_FRAMES, dtype=int).tolist())):
             update(frame)
-            taken.append(np.asarray(self.drawn()))
-        self.palette = Image.fromarray(np.concatenate(taken)).quantize(COLOURS)
+            pictures.append(np.asarray(self.drawn()))
+        self.palette = Image.fromarray(np.concatenate(pictures)).quantize(COLOURS)
         colours = np.array(self.palette.getpalette() or [255] * 3).reshape(-1, 3)
         colours[colours.min(axis=1) > 248] = 255  # nearly white becomes white
         self.palette.putpalette(colours.ravel().tolist())
@@ -162,10 +162,10 @@ class GifWriter(PillowWriter):
 
     def finish(self) -> None:
         """Write the file, whose last frame stays a while."""
-        first, *more = self._frames  # type: ignore[attr-defined]
-        each = int(1000 / self.fps)
-        times = [*[each] * len(more), each + int(1000 * LAST_FRAME_LONGER)]
-        first.save(self.outfile, save_all=True, append_images=more, duration=times if more else times[0], loop=0)
+        first, *others = self._frames  # type: ignore[attr-defined]
+        frame_time = int(1000 / self.fps)
+        times = [*[frame_time] * len(others), frame_time + int(1000 * LAST_FRAME_LONGER)]
+        first.save(self.outfile, save_all=True, append_images=others, duration=times if others else times[0], loop=0)
 
 
 class MovieWriter(FFMpegWriter):
@@ -229,18 +229,17 @@ def animate(
         raise ValueError(f"camera = {shown(camera)} is for masonry in space, and this response is in the plane")
     else:
         bodies = Bodies.of(response, magnify, limits)
-    acting = None
     if forces is not None:
         require_shown("forces", forces, response)
-        acting = response, forces
     path = require_path("path", path)
     writer, interval = writer_for(path, require_within("fps", fps, 1.0, 120.0, "1/s"))
     speed = require_within("speed", speed, 1e-3, 1e3)
     times = frame_times(bodies.t, speed * interval)
     dpi = require_within("dpi", dpi, 20.0, 600.0)
     require_text("title", title)
-    histories = film_of(response.case).beside(response)
-    figure, update = scene(bodies.at(times), histories, response.case, speed=speed, title=title, acting=acting)
+    histories, case = film_of(response.case).beside(response), response.case
+    bodies = bodies.at(times)
+    figure, update = scene(bodies, histories, case, speed=speed, title=title, response=response, forces=forces)
     return write(figure, update, len(times), path, writer, dpi)
 
 
@@ -301,7 +300,8 @@ def scene(
     *,
     speed: float = 1.0,
     title: str = "",
-    acting: tuple[Response, str] | None = None,
+    response: Response | None = None,
+    forces: str | None = None,
 ) -> tuple[Figure, Update]:
     """The picture, and what moves it to a frame.
 
@@ -310,13 +310,13 @@ def scene(
         histories: draw what stands beside the bodies, each on an Axes of its own, over the time.
         case: whose surroundings are drawn, or None.
         speed, title: as in `animate`.
-        acting: the response whose forces are drawn, and how, or None.
+        response, forces: whose forces are drawn, and how; None draws no forces.
     """
-    figure, ax, strips = _laid_out(bodies, case, len(histories))
+    figure, ax, strips = _laid_out_axes(bodies, case, len(histories))
     box = ax.figure.bbox
-    updates = _standing(ax, bodies, case, box)
-    if acting is not None:
-        updates.append(forces_on(ax, acting[0], bodies.moving, acting[1]))
+    updates = _draw_bodies(ax, bodies, case, box)
+    if response is not None and forces is not None:
+        updates.append(forces_on(ax, response, bodies.moving, forces))
     magnify = bodies.moving.magnify
     scale = "true to scale" if magnify == 1 else f"displacements x {magnify:g}"
     rate = "real time" if speed == 1 else f"{speed:g} x real time"
@@ -328,7 +328,7 @@ def scene(
         updates.append(_marker(panel, bodies.t))
         panel.label_outer()
     write_title(figure, title, 10)
-    moved = combined(updates)
+    move = combined(updates)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once: frames do not jitter, and each is drawn faster
     if isinstance(bodies, Solids):
@@ -337,26 +337,27 @@ def scene(
 
     def update(frame: int) -> None:
         clock.set_text(f"{scale}, {rate}, $t$ = {bodies.t[frame]:.2f} s")
-        moved(frame)
+        move(frame)
 
     update(0)
     return figure, update
 
 
-def _laid_out(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tuple[Figure, Axes, Sequence[Axes]]:
+def _laid_out_axes(bodies: Bodies | Solids, case: AnyCase | None, count: int) -> tuple[Figure, Axes, Sequence[Axes]]:
     """A figure as high as its bodies need, the Axes that shows them, and `count` Axes over the time."""
     is_below, (wide, high) = case is not None and film_of(case).is_below, bodies.extent_seen
-    shown = CLOCK + float(np.clip(WIDE * high / wide, LOWEST, HIGHEST)) if is_below else OTHERWISE
-    figure = Figure(figsize=(WIDE, shown + is_below * STRIP * count), layout="constrained")
-    kind = {"projection": "3d"} if isinstance(bodies, Solids) else None
+    height = CLOCK + float(np.clip(WIDE * high / wide, LOWEST, HIGHEST)) if is_below else OTHERWISE
+    figure = Figure(figsize=(WIDE, height + is_below * STRIP * count), layout="constrained")
+    axes_options = {"projection": "3d"} if isinstance(bodies, Solids) else None
     if not count:
-        return figure, figure.subplots(subplot_kw=kind), ()
-    ratios: Look = {"height_ratios": (shown, STRIP * count)} if is_below else {"width_ratios": (1.0, 1.5)}
-    part, others = figure.subfigures(1 + is_below, 2 - is_below, **ratios)
-    return figure, part.subplots(subplot_kw=kind), others.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+        return figure, figure.subplots(subplot_kw=axes_options), ()
+    ratios: Look = {"height_ratios": (height, STRIP * count)} if is_below else {"width_ratios": (1.0, 1.5)}
+    bodies_figure, strips_figure = figure.subfigures(1 + is_below, 2 - is_below, **ratios)
+    ax = bodies_figure.subplots(subplot_kw=axes_options)
+    return figure, ax, strips_figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
 
 
-def _standing(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None, box: BboxBase) -> list[Update]:
+def _draw_bodies(ax: Axes, bodies: Bodies | Solids, case: AnyCase | None, box: BboxBase) -> list[Update]:
     """Draw bodies and what they meet."""
     if isinstance(bodies, Solids):
         return [draw_solids(ax, bodies, box), *([] if case is None else [ties_in_view(ax, bodies)])]

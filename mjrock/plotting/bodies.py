@@ -17,14 +17,7 @@ from numpy.typing import ArrayLike
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.effect import Anchored
-from ..quantities import (
-    Array,
-    Flags,
-    Integers,
-    require_array,
-    require_kind,
-    require_within,
-)
+from ..quantities import Array, Flags, Integers, require_array, require_kind, require_within
 from ..result.bodies import BodyMotion
 from ..result.response import Response
 from ..result.ties import LinkEnd, elongation_of, link_ends

@@ -26,25 +26,25 @@ from ..result.ties import link_ends
 from .bodies import ends_of
 from .forces import LARGE, LEAST_DRAWN, LONGEST, DrawnForces, edges_of
 from .picture import kind, picture
-from .solids import SUNK
+from .solids import DEEPEST_SUNK
 
 Json = dict[str, object]
 """An object in the data of the page."""
-FINE, COARSE = 2.0**-20, 2.0**-13
+POSE_STEP, FORCE_STEP = 2.0**-20, 2.0**-13
 """Steps in which places are kept over the extent of the blocks [-], and of rotations; the same for forces."""
-ON_LEVEL = 1e-3
+LIFT = 1e-3
 """How far the ground is drawn below its top, and forces before the blocks, over the extent of the blocks [-]."""
-AROUND = 0.6
+CAMERA_ROOM = 0.6
 """How far around the blocks at rest the camera looks at those that move, over their extent [-]."""
-BEYOND = 1.3
+GROUND_REACH = 1.3
 """Radius of the ground, over the farthest distance of a corner from the middle [-]."""
-LAST = 1e30
+AFTER_ALL_RUNS = 1e30
 """A time after all runs, for JSON, which has no infinity [s]."""
-POINTS = 1200
+LINE_POINTS = 1200
 """Points of a line that shows what the ground does."""
-WAYS = {False: (0.42, -1.0, 0.26), True: (0.75, -1.0, 0.42)}
+CAMERA_DIRECTIONS = {False: (0.42, -1.0, 0.26), True: (0.75, -1.0, 0.42)}
 """From the middle of the blocks to the camera, in the plane and in space."""
-GROUNDS = {"motion": "along x", "vertical": "upwards", "transverse": "along y"}
+GROUND_DIRECTIONS = {"motion": "along x", "vertical": "upwards", "transverse": "along y"}
 """Where the components of the acceleration of the ground point."""
 
 
@@ -111,7 +111,7 @@ class Page:
     @property
     def run(self) -> Json:
         """All that the script of the page needs."""
-        room = AROUND * self.extent
+        room = CAMERA_ROOM * self.extent
         beside = [one.rest + one.corners for i, one in enumerate(self.bodies) if one.fixed and not self.grounds[i]]
         low, high = ends_of(np.concatenate([*self.reached[:, None], *beside]))
         low, high = np.maximum(low, self.low - room), np.minimum(high, self.high + room)
@@ -127,7 +127,7 @@ class Page:
             "track": list(self._track()),
             "opened": self._opened(),
             "box": [self._rounded(low), self._rounded(high)],
-            "way": WAYS[self.response.in_space],
+            "camera": CAMERA_DIRECTIONS[self.response.in_space],
             "reach": float(np.abs(self.reached - np.array([low, high])).max() + 2 * self.extent),
             "ground": self._ground(),
         }
@@ -163,25 +163,25 @@ class Page:
             return None
         corners = np.concatenate([one.rest + one.corners for i, one in enumerate(self.bodies) if self.grounds[i]])
         level = float(corners[:, 2].max())
-        if self.reached[0, 2] < level - SUNK * self.extent:
+        if self.reached[0, 2] < level - DEEPEST_SUNK * self.extent:
             return None
         low, high = ends_of(np.concatenate([corners, self.reached])[:, :2])
-        radius = 0.5 * BEYOND * float(np.linalg.norm(high - low)) + 0.5 * self.extent
-        return {"level": level - ON_LEVEL * self.extent, "middle": (0.5 * (low + high)).tolist(), "radius": radius}
+        radius = 0.5 * GROUND_REACH * float(np.linalg.norm(high - low)) + 0.5 * self.extent
+        return {"level": level - LIFT * self.extent, "middle": (0.5 * (low + high)).tolist(), "radius": radius}
 
     def _poses(self, moves: list[int]) -> Json:
         """Displacements and quaternions of the bodies that move, sample by sample."""
         poses = np.stack([self.bodies[i].pose for i in moves])
         largest = max(self.extent, float(np.abs(poses[..., :3]).max()))
-        places = packed(_by_row(poses[..., :3]), FINE * largest)
-        return {"places": places, "turns": packed(_by_row(without_jumps(poses[..., 3:])), FINE)}
+        places = packed(_by_row(poses[..., :3]), POSE_STEP * largest)
+        return {"places": places, "turns": packed(_by_row(without_jumps(poses[..., 3:])), POSE_STEP)}
 
     def _ties(self) -> Iterator[Json]:
         """The two ends of each link, and when it breaks."""
         for name, link in self.case.links.items():
             ends, ties = link_ends(self.case, link), self.response.ties
             start, end = (self._on_body(block, in_space(point)) for block, point in ends)
-            life = [-LAST, min(float(ties[name].broken), LAST) if name in ties else LAST]
+            life = [-AFTER_ALL_RUNS, min(float(ties[name].broken), AFTER_ALL_RUNS) if name in ties else AFTER_ALL_RUNS]
             bodies = [-1 if block is None else block for block, _ in ends]
             yield {"name": name, "start": start, "end": end, "bodies": bodies, "life": life}
 
@@ -192,7 +192,7 @@ class Page:
         lost = np.nan_to_num(self.response.forces.damage[self.samples]) > LEAST_DRAWN
         for i in np.flatnonzero(lost.any(axis=0)):
             joint = self.response.of_masonry.masonry.joints[i]
-            bodies, life = [joint.below, joint.below], [float(self.t[lost[:, i].argmax()]), LAST]
+            bodies, life = [joint.below, joint.below], [float(self.t[lost[:, i].argmax()]), AFTER_ALL_RUNS]
             for ends in edges_of(outline_of(joint)):
                 start, end = (self._on_body(joint.below, point) for point in ends)
                 yield {"name": joint.name, "start": start, "end": end, "bodies": bodies, "life": life}
@@ -207,22 +207,22 @@ class Page:
         frames = [acting.placed(frame) for frame in range(len(self.t))]
         places, shares = (in_space(np.stack(part, axis=1)) for part in zip(*frames, strict=True))
         if not self.response.in_space:  # on the front of the blocks
-            places[..., 1] = self.low[1] - ON_LEVEL * self.extent
+            places[..., 1] = self.low[1] - LIFT * self.extent
         joints = self.case.rest_geometry.joints
         return {
             "scale": acting.scale,
             "longest": LONGEST * acting.extent,
             "most": LARGE,
             "joints": [[joint.name, joint.below, joint.above] for joint in joints],
-            "places": packed(_by_row(places), COARSE * self.extent),
-            "shares": packed(_by_row(shares), COARSE),
+            "places": packed(_by_row(places), FORCE_STEP * self.extent),
+            "shares": packed(_by_row(shares), FORCE_STEP),
         }
 
     def _track(self) -> Iterator[Json]:
         """Lines of the accelerations of the ground, the displacements of supports, and the tilt of a table."""
         for name, motion in self.case.grounds.items():
             moved = motion(self._instants(motion.times))
-            yield _line(f"acceleration of the ground {GROUNDS[name]}", "m/s²", moved)
+            yield _line(f"acceleration of the ground {GROUND_DIRECTIONS[name]}", "m/s²", moved)
         for support in self.case.supports:
             moved = support.at(self._instants(support.t))
             yield _line(f"displacement of {support.block}", "m", moved[:, int(np.abs(moved).max(axis=0).argmax())])
@@ -241,7 +241,7 @@ class Page:
     def _instants(self, given: ArrayLike) -> Array:
         """Times of the points of a line, and then those given within the run [s]."""
         times, start, end = np.asarray(given), float(self.t[0]), float(self.t[-1])
-        return np.append(np.linspace(start, end, POINTS), times[(start <= times) & (times <= end)])
+        return np.append(np.linspace(start, end, LINE_POINTS), times[(start <= times) & (times <= end)])
 
 
 def _by_row(values: Array) -> Array:
@@ -253,7 +253,8 @@ def _line(name: str, unit: str, values: Array) -> Json:
     """A line of what the ground does, over its peak, which may lie between the points of the line. Its values are those
     at `_instants`."""
     peak = float(np.abs(values).max())
-    return {"name": name, "unit": unit, "peak": peak, "values": np.round(values[:POINTS] / (peak or 1.0), 3).tolist()}
+    shares = np.round(values[:LINE_POINTS] / (peak or 1.0), 3)
+    return {"name": name, "unit": unit, "peak": peak, "values": shares.tolist()}
 
 
 def outline_of(joint: Joint | SpaceJoint) -> Array:

@@ -105,9 +105,9 @@ class DrawnForces:
     def placed(self, frame: int) -> tuple[Array, Array]:
         """Where the force of each joint acts in a frame [m], and the force over the scale, shape (j, d) each."""
         middle, axes = self.joints(frame)
-        off = self.forces.eccentricity[self.sample[frame]].reshape(len(middle), -1)
-        off = np.where(self.size[frame][:, None] > 0, off, 0.0)
-        place = middle + (off[..., None] * axes[:, 1:]).sum(axis=1)
+        eccentricity = self.forces.eccentricity[self.sample[frame]].reshape(len(middle), -1)
+        eccentricity = np.where(self.size[frame][:, None] > 0, eccentricity, 0.0)
+        place = middle + (eccentricity[..., None] * axes[:, 1:]).sum(axis=1)
         return place, (self.along[frame][..., None] * axes).sum(axis=1) / self.scale
 
     def thrust(self, frame: int) -> tuple[Array, Array | float]:
@@ -124,11 +124,11 @@ class DrawnForces:
         count = len(frames.rest)
         sums = [np.bincount(body, weights=share[joint] * column, minlength=count) for column in place[joint].T]
         weight = np.bincount(body, weights=share[joint], minlength=count)
-        node = np.stack(sums, axis=-1) / np.where(weight > 0, weight, 1.0)[:, None]
-        alone = np.bincount(body, minlength=count) == 1
+        nodes = np.stack(sums, axis=-1) / np.where(weight > 0, weight, 1.0)[:, None]
+        at_one_joint = np.bincount(body, minlength=count) == 1
         d = place.shape[1]
-        node[alone] = (frames.rest + self.bodies.magnify * self.bodies.pose[frame, :, :d])[alone]
-        return np.stack([place[joint], node[body]], axis=1), WIDEST * np.minimum(share[joint], LARGE)
+        nodes[at_one_joint] = (frames.rest + self.bodies.magnify * self.bodies.pose[frame, :, :d])[at_one_joint]
+        return np.stack([place[joint], nodes[body]], axis=1), WIDEST * np.minimum(share[joint], LARGE)
 
     def bars(self, frame: int) -> tuple[Array, Array | float]:
         """A bar through the place of each joint's force along it, as long as the force is large: its ends [m], shape
@@ -147,19 +147,19 @@ class DrawnForces:
             np.array([joint.start, joint.end])[None] if isinstance(joint, Joint) else edges_of(joint.outline)
             for joint in self.response.of_masonry.masonry.joints
         ]
-        of = np.repeat(np.arange(len(outlines)), [len(edges) for edges in outlines])
-        off = np.concatenate(outlines) - self.frames.middle[of, None]
-        return of, np.matmul(off, np.swapaxes(self.frames.axes[of], 1, 2))
+        joint_of_edge = np.repeat(np.arange(len(outlines)), [len(edges) for edges in outlines])
+        offsets = np.concatenate(outlines) - self.frames.middle[joint_of_edge, None]
+        return joint_of_edge, np.matmul(offsets, np.swapaxes(self.frames.axes[joint_of_edge], 1, 2))
 
     def cracks(self, frame: int) -> tuple[Array, Array | float]:
         """Edges of joints that have lost some of their bond [m], and widths of their lines: thin as the lost share
         where they are closed, and beyond that by the width of the crack."""
         middle, axes = self.joints(frame)
-        of, ends = self.edges
-        lost: Array = np.nan_to_num(self.forces.damage[self.sample[frame]])[of]
-        open_by = self.widths[frame][of] / max(float(self.widths.max()), 1e-300)
-        ends = (middle[of, None] + np.matmul(ends, axes[of]))[lost > LEAST_DRAWN]
-        return ends, (CLOSED * lost + (CRACK - CLOSED) * open_by)[lost > LEAST_DRAWN]
+        joint_of_edge, ends = self.edges
+        lost_bond: Array = np.nan_to_num(self.forces.damage[self.sample[frame]])[joint_of_edge]
+        share_open = self.widths[frame][joint_of_edge] / max(float(self.widths.max()), 1e-300)
+        ends = (middle[joint_of_edge, None] + np.matmul(ends, axes[joint_of_edge]))[lost_bond > LEAST_DRAWN]
+        return ends, (CLOSED * lost_bond + (CRACK - CLOSED) * share_open)[lost_bond > LEAST_DRAWN]
 
 
 def edges_of(outline: Array) -> Array:
@@ -169,19 +169,19 @@ def edges_of(outline: Array) -> Array:
 
 def forces_on(ax: Axes, response: Response, bodies: BodyMotion, how: str) -> Update:
     """Draw the forces of the joints on blocks that are drawn already, and write the force of the scale."""
-    drawn = DrawnForces(response, bodies)
+    drawn_forces = DrawnForces(response, bodies)
     cracks = how == "cracks"
     colour, capstyle = (CRACKED, "butt") if cracks else (FORCE, "round")
     strokes = Strokes([], colors=colour, zorder=7, animated=True, capstyle=capstyle)
     ax.add_collection(strokes, autolim=False)
     if cracks:
-        named_line(ax, f"cracked, {1e3 * drawn.widths.max():.2g} mm open", colour, CRACK)
+        named_line(ax, f"cracked, {1e3 * drawn_forces.widths.max():.2g} mm open", colour, CRACK)
     elif how == "thrust":
-        named_line(ax, f"{drawn.scale / 1e3:.3g} kN", colour, WIDEST)
+        named_line(ax, f"{drawn_forces.scale / 1e3:.3g} kN", colour, WIDEST)
     else:
-        label = f"bar {LONGEST * drawn.extent:.2g} m long: {drawn.scale / 1e3:.3g} kN"
+        label = f"bar {LONGEST * drawn_forces.extent:.2g} m long: {drawn_forces.scale / 1e3:.3g} kN"
         named_line(ax, label, colour, BAR)
-    strokes_of = {"thrust": drawn.thrust, "bars": drawn.bars, "cracks": drawn.cracks}[how]
+    strokes_of = {"thrust": drawn_forces.thrust, "bars": drawn_forces.bars, "cracks": drawn_forces.cracks}[how]
 
     def update(frame: int) -> None:
         strokes.put(*strokes_of(frame))

@@ -11,7 +11,7 @@ from matplotlib.patches import Rectangle
 
 from ..problem.masonry.case import MasonryCase
 from ..problem.wall.case import Case
-from ..quantities import require_kind, require_text, shown
+from ..quantities import require_kind, require_text
 from ..result.ending import Outcome
 from ..result.response import Response
 from .picture import kind, listed, picture
@@ -26,6 +26,7 @@ from .style import (
     figure_of,
     figure_of_panels,
     plain_names,
+    require_labels,
     short,
     styles_of,
     wrapped,
@@ -54,25 +55,25 @@ def rotation(
         lines += ax.plot(response.t, share, **style)
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
-    far = 4 * max(reached)  # a line there would flatten the motion
+    far_limit = 4 * max(reached)  # a line there would flatten the motion
     limits = {case.overturning_rotation / case.wall.alpha for case, _ in (each.of_wall for each in responses)}
-    drawn = [limit for limit in sorted(limits) if abs(limit - 1) > 0.01 and limit < far]
-    for limit in drawn:
+    limits_drawn = [limit for limit in sorted(limits) if abs(limit - 1) > 0.01 and limit < far_limit]
+    for limit in limits_drawn:
         ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)
-    if drawn and (top is None or drawn[0] < top):
+    if limits_drawn and (top is None or limits_drawn[0] < top):
         place: Look = {"transform": ax.get_yaxis_transform(), "ha": "left", "va": "top"}
-        ax.text(0.01, drawn[0], "overturns", fontsize=8, bbox=BEHIND, **place)
+        ax.text(0.01, limits_drawn[0], "overturns", fontsize=8, bbox=BEHIND, **place)
     ax.set(xlabel=TIME, ylabel=r"rotation $\theta/\alpha$ [-]")
     names = [response.solver for response in responses] if labels is None else labels
     ends = [(short(name), t) for name, t in zip(names, fallen, strict=True) if t is not None]
     notes = [f"{name}: beyond return from t = {t:.3g} s" for name, t in ends]
     if top is not None or notes:
-        high = float(top or max(1.2, 1.05 * max([*reached, *drawn])))
-        inwards, room = min(float(share.min()) for share in shares), _share_of(ax, len(notes)) if notes else 0.0
-        bottom = -0.1 * high if top is not None else max(-high, min(-0.08 * high, 1.08 * inwards))
-        ax.set_ylim(bottom, (high - room * bottom) / (1 - room))
+        top_shown = float(top or max(1.2, 1.05 * max([*reached, *limits_drawn])))
+        lowest, room = min(float(share.min()) for share in shares), _share_of(ax, len(notes)) if notes else 0.0
+        bottom = -0.1 * top_shown if top is not None else max(-top_shown, min(-0.08 * top_shown, 1.08 * lowest))
+        ax.set_ylim(bottom, (top_shown - room * bottom) / (1 - room))
         for line in lines:  # a wall that falls goes no farther, so that its line leaves the note alone
-            line.set_clip_path(Rectangle((0, bottom), 1, high - bottom, transform=ax.get_yaxis_transform()))
+            line.set_clip_path(Rectangle((0, bottom), 1, top_shown - bottom, transform=ax.get_yaxis_transform()))
     if notes:
         text = "\n".join(notes) if len(responses) > 1 else notes[0].rsplit(": ", 1)[1]
         ax.text(0.02, 0.97, text, transform=ax.transAxes, fontsize=8, va="top", zorder=6)
@@ -94,20 +95,16 @@ def displacement(ax: Axes, responses: Sequence[Response], labels: Sequence[str] 
     Responses have the lines of their solvers, or with `labels` colours of their own.
     """
     for response, style in zip(responses, styles_of(responses, labels), strict=True):
-        far = 1e3 * np.linalg.norm(response.pose[:, :, : 3 if response.in_space else 2], axis=2).max(axis=1)
-        (line,) = ax.plot(response.t, far, **style)
-        fell = np.array(list(response.of_joints.fallen.values()))
-        ax.plot(fell, np.interp(fell, response.t, far), "x", color=line.get_color(), markersize=7, zorder=5)
+        largest = 1e3 * np.linalg.norm(response.pose[:, :, : 3 if response.in_space else 2], axis=2).max(axis=1)
+        (line,) = ax.plot(response.t, largest, **style)
+        falls = np.array(list(response.of_joints.fallen.values()))
+        ax.plot(falls, np.interp(falls, response.t, largest), "x", color=line.get_color(), markersize=7, zorder=5)
     ax.set_ylim(bottom=0)
     ax.set(xlabel=TIME, ylabel="farthest block [mm]")
     return ax
 
 
-GROUNDS = {
-    "motion": ("horizontal", BLACK),
-    "transverse": ("transverse", GREEN),
-    "vertical": ("vertical", ORANGE),
-}
+GROUNDS = {"motion": ("horizontal", BLACK), "transverse": ("transverse", GREEN), "vertical": ("vertical", ORANGE)}
 """The motions of the ground of a case, what they are called and their colours."""
 
 
@@ -201,37 +198,38 @@ def history(
     require_text("title", title)
     if not isinstance(responses, Sequence):
         require_kind("responses", responses, Response)
-    given = [responses] if isinstance(responses, Response) else list(responses)
-    for i, response in enumerate(given):
+    several = [responses] if isinstance(responses, Response) else list(responses)
+    for i, response in enumerate(several):
         require_kind(f"responses[{i}]", response, Response)
-    if not given:
+    if not several:
         raise ValueError("responses is empty; at least one response is needed")
-    for i, response in enumerate(given):
-        if type(response.case) is not type(given[0].case):
+    first = several[0]
+    for i, response in enumerate(several):
+        if type(response.case) is not type(first.case):
             raise ValueError(f"responses[{i}] and responses[0] are one of a wall and one of masonry; draw each alone")
-        if response.case.grounds != given[0].case.grounds and not reversed_ground(given[0], response):
+        if response.case.grounds != first.case.grounds and not reversed_ground(first, response):
             raise ValueError(
                 f"responses[{i}] is that to another ground motion than responses[0]; draw cases under one motion "
                 "or its reverse"
             )
-    names = required_labels(given, labels)
-    case, until = given[0].case, max(float(response.t[-1]) for response in given)
-    tied = any(response.ties for response in given)
-    shaken = bool(case.grounds)
-    heights = [1.0] * shaken + [2.0] + [1.2] * tied
+    names = required_labels(several, labels)
+    case, until = first.case, max(float(response.t[-1]) for response in several)
+    has_ties = any(response.ties for response in several)
+    has_motion = bool(case.grounds)
+    heights = [1.0] * has_motion + [2.0] + [1.2] * has_ties
     figure = Picture(figsize=(6.3, 1.8 + 1.2 * len(heights)), layout="constrained")
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights, squeeze=False)[:, 0]
-    if shaken:
+    if has_motion:
         acceleration(axes[0], case, until)
-    (rotation if given[0].joints is None else displacement)(axes[int(shaken)], given, names)
-    if tied:
-        ties(axes[-1], given, names)
+    (rotation if first.joints is None else displacement)(axes[int(has_motion)], several, names)
+    if has_ties:
+        ties(axes[-1], several, names)
     for ax in axes[:-1]:
         ax.set_xlabel("")
     axes[0].set_xlim(0, until)
     axes[0].set_title(wrapped(title, 5.4, 10), fontsize=10)
-    if len(given) > 1:
-        below_figure(figure, axes[int(shaken)])
+    if len(several) > 1:
+        below_figure(figure, axes[int(has_motion)])
     return figure
 
 
@@ -247,19 +245,16 @@ def required_labels(responses: Sequence[Response], labels: object) -> list[str] 
     """Labels of responses: those given, or solvers with numbers where cases differ, or None where solvers suffice.
 
     Raises:
-        TypeError, ValueError: if they are not texts, or another number of them.
+        TypeError, ValueError: see `require_labels`.
     """
-    if labels is None:
-        if len({response.solver for response in responses}) == len(responses):
-            return None
-        turned = [", reversed" if reversed_ground(responses[0], response) else "" for response in responses]
-        own = [f"{response.solver}{way}" for response, way in zip(responses, turned, strict=True)]
-        return own if len(set(own)) == len(own) else [f"{name} {i + 1}" for i, name in enumerate(own)]
-    if isinstance(labels, str) or not isinstance(labels, Sequence):
-        raise TypeError(f"labels = {shown(labels)} is not a sequence of texts")
-    if len(labels) != len(responses):
-        raise ValueError(f"labels has {len(labels)} texts for {len(responses)} responses; one for each is needed")
-    return [require_text(f"labels[{i}]", label) for i, label in enumerate(labels)]
+    if labels is not None:
+        return require_labels(labels, responses)
+    if len({response.solver for response in responses}) == len(responses):
+        return None
+    first, names = responses[0], list[str]()
+    for response in responses:
+        names.append(response.solver + (", reversed" if reversed_ground(first, response) else ""))
+    return names if len(set(names)) == len(names) else [f"{name} {i + 1}" for i, name in enumerate(names)]
 
 
 @picture(responses=listed(kind(Response)))
@@ -298,13 +293,13 @@ def grid(
     of the responses of each panel, in place of their solvers.
     """
     figure, axes = figure_of_panels(len(panels), columns, (3.4, 2.2))
-    drawn = list(axes.flat[: len(panels)])
-    for ax, (title, responses) in zip(drawn, panels, strict=True):
+    axes_drawn = list(axes.flat[: len(panels)])
+    for ax, (title, responses) in zip(axes_drawn, panels, strict=True):
         rotation(ax, responses, labels, top)
         ax.set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.7, 9), fontsize=9)
-    limits = np.array([ax.get_ylim() for ax in drawn])
+    limits = np.array([ax.get_ylim() for ax in axes_drawn])
     last = max(float(response.t[-1]) for _, responses in panels for response in responses)
-    for ax in drawn:
+    for ax in axes_drawn:
         ax.set(xlim=(0.0, last), ylim=(limits[:, 0].min(), limits[:, 1].max()))
         ax.label_outer(remove_inner_ticks=False)
     below_figure(figure, axes[0, 0], fontsize=8)

@@ -91,11 +91,11 @@ def blocks(
         draw_solids(ax, bodies, ax.bbox)(0)
         fill_view(ax, bodies, ax.bbox)
     else:
-        flat = Bodies.of_moving(moving, limits)
-        draw_outlines(ax, flat)(0)
+        flat_bodies = Bodies.of_moving(moving, limits)
+        draw_outlines(ax, flat_bodies)(0)
         if joints and pose is None and not isinstance(masonry, Response):
             _joints(ax, case.masonry.plane_joints)
-        _view(ax, flat)
+        _view(ax, flat_bodies)
     if isinstance(masonry, Response) and forces is not None:
         forces_on(ax, masonry, moving, forces)(0)
     make_static(ax, others)
@@ -147,12 +147,7 @@ def _view(ax: Axes, bodies: Bodies) -> None:
 
 @picture(limits=anything)
 def thrust(
-    ax: Axes,
-    response: Response,
-    at: float | None = None,
-    *,
-    magnified: float = 1.0,
-    limits: ArrayLike | None = None,
+    ax: Axes, response: Response, at: float | None = None, *, magnified: float = 1.0, limits: ArrayLike | None = None
 ) -> Axes:
     """The line of thrust through blocks, or through a wall, at a time, as wide as the force is large.
 
@@ -230,15 +225,15 @@ def mechanism(ax: Axes, collapse: Collapse, *, share: float = 0.1, forces: bool 
 
 def _draw_joint_forces(ax: Axes, moving: BodyMotion, masonry: Masonry, forces: JointForces) -> None:
     """A line for each force of a joint, where the joint has moved."""
-    normal, along = forces.normal, forces.eccentricity
+    normal, eccentricity = forces.normal, forces.eccentricity
     pressing = np.stack([normal, forces.shear], axis=1)
     size = np.linalg.norm(pressing, axis=1)
-    middles, axes = (of[0] for of in moving.joints(moving.case.rest_geometry.frames))
+    middles, axes = (arrays[0] for arrays in moving.joints(moving.case.rest_geometry.frames))
     widths = [joint.width for joint in masonry.plane_joints]
     named_line(ax, f"{size.max() / 1e3:.3g} kN", FORCE, THICK)
     for i in np.flatnonzero(normal > 1e-3 * size.max()):
-        way = pressing[i] @ axes[i] / size[i]
-        ends = middles[i] + along[i] * axes[i, 1] + 0.25 * widths[i] * np.outer([-1, 1], way)
+        direction = pressing[i] @ axes[i] / size[i]
+        ends = middles[i] + eccentricity[i] * axes[i, 1] + 0.25 * widths[i] * np.outer([-1, 1], direction)
         ax.plot(*ends.T, color=FORCE, linewidth=max(0.4, THICK * size[i] / size.max()), solid_capstyle="round")
 
 
@@ -259,23 +254,23 @@ def draw_loads(
     growing = () if isinstance(loads, Mapping) else tuple(loads)
     for effect in (*effects, *growing):
         if len(corners := effect.outline):
-            colour, over = (LADEN, 0.3) if effect in growing else (EARTH, 0.2)
-            ax.add_patch(Polygon(corners, facecolor=colour, edgecolor=colour, linewidth=0.6, zorder=over))
+            colour, zorder = (LADEN, 0.3) if effect in growing else (EARTH, 0.2)
+            ax.add_patch(Polygon(corners, facecolor=colour, edgecolor=colour, linewidth=0.6, zorder=zorder))
     constant = [arrow for effect in effects if (arrow := _force_of(masonry, effect)) is not None]
     growing_forces = [arrow for effect in growing if (arrow := _force_of(masonry, effect)) is not None]
     growing_forces += (
         [_line_of_action(masonry, name, load) for name, load in loads.items()] if isinstance(loads, Mapping) else []
     )
     size = float(np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]), axis=0).max())
-    seen = [effect.outline for effect in (*effects, *growing) if len(effect.outline)]
-    for arrows, width, named in ((constant, 1.0, len(constant) <= NAMED), (growing_forces, 2.0, True)):
+    outlines = [effect.outline for effect in (*effects, *growing) if len(effect.outline)]
+    for arrows, width, with_names in ((constant, 1.0, len(constant) <= NAMED), (growing_forces, 2.0, True)):
         largest = max((float(np.hypot(*force)) for _, force in arrows), default=0.0)
-        for at, force in arrows:
+        for place, force in arrows:
             length = max(float(np.hypot(*force)) / largest, SMALLEST) * ARROW * size
-            seen.append(_arrow(ax, at, force, length, width, named))
-    if seen:
+            outlines.append(_arrow(ax, place, force, length, width, with_names))
+    if outlines:
         (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
-        least, most = (end(np.concatenate(seen), axis=0) for end in (np.min, np.max))
+        least, most = (end(np.concatenate(outlines), axis=0) for end in (np.min, np.max))
         room = NAME_ROOM * size
         ax.set_xlim(min(left, least[0] - room), max(right, most[0] + room))
         ax.set_ylim(min(low, least[1] - room), max(high, most[1] + room))
@@ -298,19 +293,19 @@ def _line_of_action(masonry: Masonry, name: str, load: Sequence[float]) -> tuple
     return masonry.centroids[masonry.names.index(name)] + aside, force
 
 
-def _arrow(ax: Axes, at: Array, force: Array, length: float, width: float, named: bool) -> Array:
+def _arrow(ax: Axes, place: Array, force: Array, length: float, width: float, with_name: bool) -> Array:
     """An arrow of a length [m]: onto its point where it presses downwards, otherwise from its point along the force.
     Its ends [m], shape (2, 2)."""
     along = force / max(float(np.hypot(*force)), 1e-300) * length
-    tail, tip = (at - along, at) if force[1] < 0 else (at, at + along)
+    tail, tip = (place - along, place) if force[1] < 0 else (place, place + along)
     look: Look = {"arrowstyle": "-|>", "mutation_scale": 6 + 4 * width, "color": LOAD, "linewidth": width, "zorder": 8}
     ax.add_patch(FancyArrowPatch(tuple(tail), tuple(tip), shrinkA=0, shrinkB=0, **look))
-    if named:
-        down = force[1] < 0
-        beside: Look = {"ha": "left" if along[0] > 0 else "right", "va": "center"}
-        beside |= {"ha": "center", "va": "bottom"} if down else {}
-        label, end = f"{np.hypot(*force) / 1e3:.3g} kN", tail if down else tip
-        shift = (0, 2) if down else (3 * np.sign(along[0]), 0)
-        beside |= {"textcoords": "offset points", "fontsize": 8, "color": LOAD, "zorder": 8, "bbox": BEHIND}
-        ax.annotate(label, tuple(end), shift, **beside)
+    if with_name:
+        downwards = force[1] < 0
+        label_look: Look = {"ha": "left" if along[0] > 0 else "right", "va": "center"}
+        label_look |= {"ha": "center", "va": "bottom"} if downwards else {}
+        label, end = f"{np.hypot(*force) / 1e3:.3g} kN", tail if downwards else tip
+        offset = (0, 2) if downwards else (3 * np.sign(along[0]), 0)
+        label_look |= {"textcoords": "offset points", "fontsize": 8, "color": LOAD, "zorder": 8, "bbox": BEHIND}
+        ax.annotate(label, tuple(end), offset, **label_look)
     return np.array([tail, tip])

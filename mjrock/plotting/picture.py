@@ -14,15 +14,7 @@ from matplotlib.transforms import Bbox
 from numpy.typing import ArrayLike
 
 from ..problem.wall.case import Case
-from ..quantities import (
-    Array,
-    require_kind,
-    require_reals,
-    require_text,
-    require_whole,
-    require_within,
-    shown,
-)
+from ..quantities import Array, require_kind, require_reals, require_text, require_whole, require_within, shown
 from ..result.response import Response
 from ..study.intensity.fragility import Fragility
 from .style import Drawing, Picture, figure_of_panels, wrapped

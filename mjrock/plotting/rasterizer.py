@@ -10,21 +10,21 @@ import numpy as np
 from ..compiled import compiled
 from ..quantities import Array, Flags, Integers
 
-MAP = 1500
+SHADOW_MAP = 1500
 """Pixels along each side of the view from the sun, which finds the shadows."""
-BEHIND = 6.0
+SHADOW_TOLERANCE = 6.0
 """How far behind the nearest surface a point may lie, seen from the sun, and still be lit [pixel of that view]."""
 FLOOR, INK = (0.91, 0.9, 0.87), (0.17, 0.13, 0.11)
 """Colours of the ground and of edges."""
-DARK, ALOFT, SUNNY = 0.60, 0.08, 0.40
+SHADE_BRIGHTNESS, UPWARD_GAIN, SUN_GAIN = 0.60, 0.08, 0.40
 """Brightness of a face in the shade that is vertical, what it gains as it turns upwards, and towards the sun [-]."""
 SHADED = 0.78
 """Brightness of the ground in the shade [-]."""
-FADES = 0.65
+FADE_START = 0.65
 """Where the ground begins to fade, over its radius [-]."""
-ASIDE = 1e-9
+EDGE_ON = 1e-9
 """Cosine of the angle between the line of sight and the normal of a face that is seen as a line [-]."""
-BARE, EMPTY = -1, -2
+BARE_GROUND, NO_SURFACE = -1, -2
 """Numbers of the surface where a picture shows the ground, and where it is empty."""
 
 
@@ -87,7 +87,7 @@ class View(NamedTuple):
         right = np.cross((0.0, 0.0, 1.0), sun)
         right /= np.linalg.norm(right)
         axes = np.array([right, np.cross(sun, right), sun])
-        return cls(axes, 0.5 * (low + high), (MAP, MAP), float(np.linalg.norm(high - low)) / MAP)
+        return cls(axes, 0.5 * (low + high), (SHADOW_MAP, SHADOW_MAP), float(np.linalg.norm(high - low)) / SHADOW_MAP)
 
     def seen(self, points: Array) -> Array:
         """Where points are: to the right and upwards from the lowest left corner, and how far before the middle
@@ -98,39 +98,41 @@ class View(NamedTuple):
     def places(self) -> Array:
         """A point at the lowest left corner, and how it moves with each pixel to the right, upwards, and outwards [m],
         shape (4, 3)."""
-        ways = self.pixel * self.axes
-        return np.array([self.middle - 0.5 * self.size[0] * ways[0] - 0.5 * self.size[1] * ways[1], *ways])
+        right, upwards, outwards = self.pixel * self.axes
+        corner = self.middle - 0.5 * self.size[0] * right - 0.5 * self.size[1] * upwards
+        return np.array([corner, right, upwards, outwards])
 
     def drawn(self, surfaces: Surfaces) -> tuple[Array, Integers]:
         """Distance of the surface that each pixel shows before the middle [pixel], and its number, (height, width)."""
-        depth, shown = np.full(self.size[::-1], -np.inf), np.full(self.size[::-1], EMPTY)
-        _draw(self.seen(surfaces.corners), surfaces.normals @ self.axes[2] > ASIDE, depth, shown)
+        depth, shown = np.full(self.size[::-1], -np.inf), np.full(self.size[::-1], NO_SURFACE)
+        _draw(self.seen(surfaces.corners), surfaces.normals @ self.axes[2] > EDGE_ON, depth, shown)
         return depth, shown
 
-    def picture(self, surfaces: Surfaces, sun: Array, ground: Ground | None, line: int, times: int = 1) -> Array:
+    def picture(self, surfaces: Surfaces, sun: Array, ground: Ground | None, edge: int, fine: int = 1) -> Array:
         """Red, green, blue and opacity, 0 to 1, shape (height, width, 4), lowest row first.
 
         Args:
             surfaces: what is drawn.
             sun: unit vector to the sun, shape (3,).
             ground: below them, or None.
-            line: width of edges [pixel].
-            times: pixels along each side of one of the picture, which has the mean of their colours.
+            edge: width of edges [pixel].
+            fine: pixels along each side of one of the picture, which has the mean of their colours.
         """
         depth, shown = self.drawn(surfaces)
-        flat = self.places
+        to_ground = self.places
         if ground is not None and self.axes[2, 2] > 0:
-            flat[0] -= (*ground.middle, ground.level)
-            flat[:, :2] /= ground.radius
-            _uncover(flat, depth, shown)
-        shining = View.of_the_sun(sun, surfaces.corners)
-        shade, to_sun, normals = shining.drawn(surfaces)[0], shining.seen(self.places), surfaces.normals
-        to_sun[1:] -= shining.seen(np.zeros(3))
-        bright = (DARK + ALOFT * normals[:, 2])[:, None] + SUNNY * np.outer(np.maximum(normals @ sun, 0.0), (0.0, 1.0))
-        tones = np.concatenate([bright[..., None] * surfaces.colour[:, None], [np.outer((SHADED, 1.0), FLOOR)]])
-        colours = np.zeros((self.size[1] // times, self.size[0] // times, 4))
-        number = np.append(surfaces.number, (EMPTY, BARE))
-        _paint((depth, shown, number), (shade, to_sun, flat), np.minimum(tones, 1.0), (line, times), colours)
+            to_ground[0] -= (*ground.middle, ground.level)
+            to_ground[:, :2] /= ground.radius
+            _uncover(to_ground, depth, shown)
+        sun_view = View.of_the_sun(sun, surfaces.corners)
+        sun_depth, to_sun, normals = sun_view.drawn(surfaces)[0], sun_view.seen(self.places), surfaces.normals
+        to_sun[1:] -= sun_view.seen(np.zeros(3))
+        brightness = (SHADE_BRIGHTNESS + UPWARD_GAIN * normals[:, 2])[:, None]
+        brightness = brightness + SUN_GAIN * np.outer(np.maximum(normals @ sun, 0.0), (0.0, 1.0))
+        tones = np.concatenate([brightness[..., None] * surfaces.colour[:, None], [np.outer((SHADED, 1.0), FLOOR)]])
+        colours = np.zeros((self.size[1] // fine, self.size[0] // fine, 4))
+        piece = np.append(surfaces.number, (NO_SURFACE, BARE_GROUND))
+        _paint(depth, shown, piece, sun_depth, to_sun, to_ground, np.minimum(tones, 1.0), edge, fine, colours)
         return colours
 
 
@@ -169,67 +171,76 @@ def _draw(corners: Array, facing: Flags, depth: Array, shown: Integers) -> None:
 
 
 @compiled
-def _uncover(flat: Array, depth: Array, shown: Integers) -> None:
-    """Show the ground where it lies before what is there; `flat` is the height above it, as `View.places` has it."""
+def _uncover(to_ground: Array, depth: Array, shown: Integers) -> None:
+    """Show the ground where it lies before what is there; `to_ground` is as `View.places`, from its level."""
     for row in range(depth.shape[0]):
         for column in range(depth.shape[1]):
-            out = -(flat[0, 2] + (column + 0.5) * flat[1, 2] + (row + 0.5) * flat[2, 2]) / flat[3, 2]
+            height = to_ground[0, 2] + (column + 0.5) * to_ground[1, 2] + (row + 0.5) * to_ground[2, 2]
+            out = -height / to_ground[3, 2]
             if out > depth[row, column]:
-                depth[row, column], shown[row, column] = out, BARE
+                depth[row, column], shown[row, column] = out, BARE_GROUND
 
 
 @compiled
 def _paint(
-    seen: tuple[Array, Integers, Integers],
-    ways: tuple[Array, Array, Array],
+    depth: Array,
+    shown: Integers,
+    piece: Integers,
+    sun_depth: Array,
+    to_sun: Array,
+    to_ground: Array,
     tones: Array,
-    sizes: tuple[int, int],
+    edge: int,
+    fine: int,
     colours: Array,
 ) -> None:
     """Colour each pixel of a picture by the mean of its parts.
 
     Args:
-        seen: how far before the middle the parts lie, which surface they show, and of which plane piece each is.
-        ways: how far before the middle the surfaces lie that are seen from the sun; how to get from a pixel to one of
-            that view, and to a place over the radius of the ground, as in `View.places`.
+        depth, shown: how far before the middle the parts lie, and the surface that each shows.
+        piece: the plane piece of a body that each surface is of.
+        sun_depth: how far before the middle the surfaces lie that are seen from the sun.
+        to_sun, to_ground: the pixel of the view from the sun, and the place over the radius of the ground, as
+            `View.places` has it.
         tones: colours of each surface, and of the ground, in the shade and in the sun, shape (n + 1, 2, 3).
-        sizes: width of edges, and number of parts along each side [pixel].
+        edge: width of edges [pixel].
+        fine: number of parts along each side of a pixel.
         colours: of the pixels, 0 at first, shape (height, width, 4).
     """
-    (depth, shown, number), (shade, sun, flat), (line, times) = seen, ways, sizes
     high, wide = depth.shape
-    for part in range(colours.shape[0] * times * colours.shape[1] * times):
-        row, column = part // (colours.shape[1] * times), part % (colours.shape[1] * times)
-        there, pixel = shown[row, column], colours[row // times, column // times]
-        edge = False
-        for k in range(line):
+    for part in range(colours.shape[0] * fine * colours.shape[1] * fine):
+        row, column = part // (colours.shape[1] * fine), part % (colours.shape[1] * fine)
+        surface, pixel = shown[row, column], colours[row // fine, column // fine]
+        on_edge = False
+        for k in range(edge):
             above, beside = row + k, column + k
-            if 0 < above < high and number[shown[above, column]] != number[shown[above - 1, column]]:
-                edge = True
-            if 0 < beside < wide and number[shown[row, beside]] != number[shown[row, beside - 1]]:
-                edge = True
-        if edge:
+            if 0 < above < high and piece[shown[above, column]] != piece[shown[above - 1, column]]:
+                on_edge = True
+            if 0 < beside < wide and piece[shown[row, beside]] != piece[shown[row, beside - 1]]:
+                on_edge = True
+        if on_edge:
             for i in range(3):
                 pixel[i] += INK[i]
             pixel[3] += 1.0
-        elif there != EMPTY:
+        elif surface != NO_SURFACE:
             right, up, out = column + 0.5, row + 0.5, depth[row, column]
-            x = sun[0, 0] + right * sun[1, 0] + up * sun[2, 0] + out * sun[3, 0]
-            y = sun[0, 1] + right * sun[1, 1] + up * sun[2, 1] + out * sun[3, 1]
-            before = sun[0, 2] + right * sun[1, 2] + up * sun[2, 2] + out * sun[3, 2]
+            x = to_sun[0, 0] + right * to_sun[1, 0] + up * to_sun[2, 0] + out * to_sun[3, 0]
+            y = to_sun[0, 1] + right * to_sun[1, 1] + up * to_sun[2, 1] + out * to_sun[3, 1]
+            before = to_sun[0, 2] + right * to_sun[1, 2] + up * to_sun[2, 2] + out * to_sun[3, 2]
             lit = 1
-            if 0 <= x < shade.shape[1] and 0 <= y < shade.shape[0] and before < shade[int(y), int(x)] - BEHIND:
+            in_sun_view = 0 <= x < sun_depth.shape[1] and 0 <= y < sun_depth.shape[0]
+            if in_sun_view and before < sun_depth[int(y), int(x)] - SHADOW_TOLERANCE:
                 lit = 0
             opaque = 1.0
-            if there == BARE:
-                x = flat[0, 0] + right * flat[1, 0] + up * flat[2, 0] + out * flat[3, 0]
-                y = flat[0, 1] + right * flat[1, 1] + up * flat[2, 1] + out * flat[3, 1]
-                opaque = min(max((1 - math.hypot(x, y)) / (1 - FADES), 0.0), 1.0)
+            if surface == BARE_GROUND:
+                x = to_ground[0, 0] + right * to_ground[1, 0] + up * to_ground[2, 0] + out * to_ground[3, 0]
+                y = to_ground[0, 1] + right * to_ground[1, 1] + up * to_ground[2, 1] + out * to_ground[3, 1]
+                opaque = min(max((1 - math.hypot(x, y)) / (1 - FADE_START), 0.0), 1.0)
                 opaque *= opaque * (3 - 2 * opaque)
             for i in range(3):
-                pixel[i] += opaque * tones[there, lit, i]
+                pixel[i] += opaque * tones[surface, lit, i]
             pixel[3] += opaque
-        if row % times == times - 1 and column % times == times - 1 and pixel[3] > 0:
+        if row % fine == fine - 1 and column % fine == fine - 1 and pixel[3] > 0:
             for i in range(3):
                 pixel[i] /= pixel[3]
-            pixel[3] /= times * times
+            pixel[3] /= fine * fine

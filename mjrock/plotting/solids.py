@@ -27,9 +27,9 @@ from .bodies import Update, combined, ends_of, link, padded_rows, placed_ends, r
 from .rasterizer import Ground, Surfaces, View
 from .style import figure_of
 
-AROUND, FARTHEST = 0.6, 3.0
+GROUND_ROOM, FARTHEST = 0.6, 3.0
 """How far the ground is drawn beyond all corners, and the farthest corners that count for it, over the extent [-]."""
-SUNK = 0.05
+DEEPEST_SUNK = 0.05
 """Largest depth of blocks below the ground with which it is still drawn, over the extent [-]."""
 PLANE_ROUNDING = 1e-6
 """Part of normals and of the extent to which two faces lie in one plane [-]."""
@@ -37,11 +37,11 @@ SUN = np.array([-0.75, 0.55, 1.0])
 """Where the sun stands: to the right of the camera, towards it, and upwards."""
 MARGIN, TITLED = (0.2, 0.4), (0.2, 0.8)
 """Width and height that stay free around a view, for the scale bar, and for a title too [inch]."""
-BELOW, BELOW_FLAT = 0.05, 0.02
+BAR_BELOW, BAR_BELOW_FLAT = 0.05, 0.02
 """How far a scale bar stands below what is seen, over its height, and at least over its width [-]."""
-FINE, DENSE = 2, 150
+SUBPIXELS, DENSE_RESOLUTION = 2, 150
 """Subpixels along each side of a pixel of the picture, and the resolution below which they are drawn [1/inch]."""
-EDGE, RIM = 0.55, 0.1
+EDGE_WIDTH, FADING_RIM = 0.55, 0.1
 """Width of edges [point], and of the rim of the box within which the picture fades [inch]."""
 
 
@@ -165,11 +165,11 @@ class Solids:
         tops = [float(self.masonry.blocks[i].corners[:, 2].max()) for i in grounds]
         low, high = self.extent()
         size = float((high - low).max())
-        if not tops or self.reached[0, 2] < max(tops) - SUNK * size:
+        if not tops or self.reached[0, 2] < max(tops) - DEEPEST_SUNK * size:
             return None
         near, far = np.clip(self.reached, low - FARTHEST * size, high + FARTHEST * size)[:, :2]
         low, high = np.minimum(near, low[:2]), np.maximum(far, high[:2])
-        return Ground(max(tops), 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)) + AROUND * size)
+        return Ground(max(tops), 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)) + GROUND_ROOM * size)
 
     def extent(self) -> Array:
         """The lowest and the highest x, y and z that the blocks reach in the picture [m], shape (2, 3).
@@ -204,8 +204,9 @@ class Solids:
         """
         low, high = self.extent()
         box = np.stack(np.meshgrid(*np.transpose([low, high]), indexing="ij"), axis=-1).reshape(-1, 3)
-        held = [box] if self.limits is not None else [np.clip(self.corners(k), low, high) for k in self._some]
-        return ends_of(np.array([ends_of(corners.reshape(-1, 3) @ self.across.T) for corners in held]))
+        frames = [] if self.limits is not None else self._some
+        drawn = [np.clip(self.corners(frame), low, high) for frame in frames] or [box]
+        return ends_of(np.array([ends_of(corners.reshape(-1, 3) @ self.across.T) for corners in drawn]))
 
     @property
     def extent_seen(self) -> Array:
@@ -238,35 +239,36 @@ class Rendering(Artist):
 
     def draw(self, renderer: RendererBase) -> None:
         """Draw it at the resolution of the renderer."""
-        times = renderer.get_image_magnification()
-        inch = times * figure_of(self.ax).dpi
-        fine = FINE if inch < DENSE else 1
-        view, gc = self.view(times, fine), renderer.new_gc()
+        magnification = renderer.get_image_magnification()
+        resolution = magnification * figure_of(self.ax).dpi
+        fine = SUBPIXELS if resolution < DENSE_RESOLUTION else 1
+        view, gc = self.view(magnification, fine), renderer.new_gc()
         key = self.frame, view.size, view.pixel, view.middle.tobytes()
         if key != self._kept[0]:  # a figure is drawn once for its layout, and once more
-            self._kept = key, self._picture(view, fine, inch)
+            self._kept = key, self._picture(view, fine, resolution)
         renderer.draw_image(gc, self.box.x0, self.box.y0, self._kept[1])
         gc.restore()
 
-    def _picture(self, view: View, fine: int, inch: float) -> Integers:
-        """Red, green, blue and opacity, 0 to 255, at `inch` pixels to an inch; it fades at the rim."""
-        line = max(1, round(fine * EDGE * inch / 72))
-        colours = view.picture(*self.bodies.stage(self.frame), line, fine)
+    def _picture(self, view: View, fine: int, resolution: float) -> Integers:
+        """Red, green, blue and opacity, 0 to 255, at a resolution [pixel/inch]; it fades at the rim."""
+        edge = max(1, round(fine * EDGE_WIDTH * resolution / 72))
+        colours = view.picture(*self.bodies.stage(self.frame), edge, fine)
         rows, columns = (np.arange(count) + 0.5 for count in colours.shape[:2])
-        rim = [np.clip(np.minimum(at, len(at) - at) / (RIM * inch), 0, 1) for at in (rows, columns)]
+        to_rim = [np.minimum(positions, len(positions) - positions) for positions in (rows, columns)]
+        rim = [np.clip(distances / (FADING_RIM * resolution), 0, 1) for distances in to_rim]
         colours[..., 3] *= np.outer(*rim)
         return np.rint(255 * colours).astype(np.uint8)
 
-    def view(self, times: float = 1.0, fine: int = 1) -> View:
-        """The view in the box, of `times` pixels for each of the box along either side, each drawn as `fine` ones."""
+    def view(self, magnification: float = 1.0, fine: int = 1) -> View:
+        """The view in the box, of `magnification` pixels for each of the box along a side, each of `fine` ones."""
         space, bodies = in_three(self.ax), self.bodies
-        ends = np.mean([getattr(space, f"get_{name}lim")() for name in "xyz"], axis=1)
-        x, y, _ = proj_transform(*np.transpose([ends, ends + bodies.across[0]]), space.get_proj())
-        (at, beside) = space.transData.transform(np.column_stack([x, y]))
-        metre = float(np.hypot(*(beside - at)))
-        middle = ends + (self.box.get_points().mean(axis=0) - at) / metre @ bodies.across
-        wide, high = (fine * max(1, round(times * size)) for size in self.box.size)
-        return View(np.array([*bodies.across, bodies.eye]), middle, (wide, high), 1 / (metre * times * fine))
+        centre = np.mean([getattr(space, f"get_{name}lim")() for name in "xyz"], axis=1)
+        x, y, _ = proj_transform(*np.transpose([centre, centre + bodies.across[0]]), space.get_proj())
+        (start, end) = space.transData.transform(np.column_stack([x, y]))
+        metre = float(np.hypot(*(end - start)))
+        middle = centre + (self.box.get_points().mean(axis=0) - start) / metre @ bodies.across
+        width, height = (fine * max(1, round(magnification * size)) for size in self.box.size)
+        return View(np.array([*bodies.across, bodies.eye]), middle, (width, height), 1 / (metre * magnification * fine))
 
 
 def in_three(ax: Axes) -> Axes3D:
@@ -300,8 +302,8 @@ def fill_view(ax: Axes, bodies: Solids, box: BboxBase, margin: tuple[float, floa
     figure, seen = figure_of(ax), bodies.seen
     limits = np.array([getattr(space, f"get_{name}lim")() for name in "xyz"])
     if bodies.limits is None:
-        off = seen.mean(axis=0) - bodies.across @ limits.mean(axis=1)
-        limits += (off @ bodies.across)[:, None]
+        shift = seen.mean(axis=0) - bodies.across @ limits.mean(axis=1)
+        limits += (shift @ bodies.across)[:, None]
         space.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
     x, y, _ = proj_transform(*(seen @ bodies.across).T, space.get_proj())
     space.apply_aspect()
@@ -314,7 +316,7 @@ def ties_in_view(ax: Axes, bodies: Solids) -> Update:
     """Draw the links of blocks, each from the point that it holds to its anchor."""
     space, moving = in_three(ax), bodies.moving
     links = bodies.case.links.values()
-    return combined([link(space, moving, one, placed_ends(moving, *link_ends(moving.case, one))) for one in links])
+    return combined([link(space, moving, tie, placed_ends(moving, *link_ends(moving.case, tie))) for tie in links])
 
 
 def _frame(ax: Axes3D, bodies: Solids) -> None:
@@ -332,7 +334,7 @@ def _scale_bar(ax: Axes3D, bodies: Solids) -> None:
     """Draw a line of 1, 2 or 5 times a power of ten [m] across the line of sight, below what is seen at the left."""
     (left, low), (right, high) = bodies.seen
     length = round_length(float(right - left))
-    start = np.array([left, low - max(BELOW * (high - low), BELOW_FLAT * (right - left))])
+    start = np.array([left, low - max(BAR_BELOW * (high - low), BAR_BELOW_FLAT * (right - left))])
     ends = np.array([start, start + np.array([length, 0.0])]) @ bodies.across
     (line,) = ax.plot(*ends.T, color="0.15", linewidth=2.5, solid_capstyle="butt", zorder=6, clip_on=False)
     text = ax.text(*ends[1], f"  {length:g} m", va="center", fontsize=8, zorder=6)

@@ -76,11 +76,11 @@ def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure
     It is the first thing to look at of a file. Several motions are drawn over each other, so that it shows what
     `corrected` does: `record([motion, motion.corrected("linear")])`. Of a set of records it has the horizontal ones.
     """
-    given = [motions] if isinstance(motions, GroundMotion) else motions
-    given = given.horizontal if isinstance(given, RecordSet) else given
-    figure = Figure(figsize=(6.4, 5.4 + 0.4 * len(given)), layout="constrained")
+    records = [motions] if isinstance(motions, GroundMotion) else motions
+    records = records.horizontal if isinstance(records, RecordSet) else records
+    figure = Figure(figsize=(6.4, 5.4 + 0.4 * len(records)), layout="constrained")
     axes = figure.subplots(3, sharex=True)
-    for i, motion in enumerate(given):
+    for i, motion in enumerate(records):
         t = np.sort(np.append(motion.times, np.linspace(0.0, motion.duration, 400)))  # also where it has few samples
         histories = (motion.times, motion.accel), (t, motion.velocity(t)), (t, motion.displacement(t))
         for ax, (t, history), unit in zip(axes, histories, ("m/s²", "m/s", "m"), strict=True):
@@ -94,7 +94,7 @@ def record(motions: GroundMotion | Sequence[GroundMotion] | RecordSet) -> Figure
         ax.yaxis.set_label_coords(-0.1, 0.5)
         columns = {"ncols": 1 if ax is axes[0] else 3, "columnspacing": 1.0, "handlelength": 1.0}
         ax.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.0, **columns)
-    axes[2].set(xlabel="time $t$ [s]", xlim=(0, max(motion.duration for motion in given)))
+    axes[2].set(xlabel="time $t$ [s]", xlim=(0, max(motion.duration for motion in records)))
     return figure
 
 
@@ -170,17 +170,17 @@ def thresholds(ax: Axes, found: Thresholds, unit: str = "") -> Axes:
         unit: of the scales, for the axis.
     """
     last = float(found.scales[-1])
-    for row, (own, shares) in enumerate(zip(found.islands, found.shares, strict=True)):
-        for one in own:
-            end = last if math.isnan(one.stands_above) else one.falls_to
-            upper = end if math.isnan(one.stands_above) else one.upper[1]
-            ax.barh(row, end - one.falls_from, 0.5, left=one.falls_from, color=ORANGE, alpha=0.45)
-            ax.barh(row, upper - one.lower[0], 0.12, left=one.lower[0], color=ORANGE)
+    for row, (ranges, shares) in enumerate(zip(found.islands, found.shares, strict=True)):
+        for scale_range in ranges:
+            end = last if math.isnan(scale_range.stands_above) else scale_range.falls_to
+            upper = end if math.isnan(scale_range.stands_above) else scale_range.upper[1]
+            ax.barh(row, end - scale_range.falls_from, 0.5, left=scale_range.falls_from, color=ORANGE, alpha=0.45)
+            ax.barh(row, upper - scale_range.lower[0], 0.12, left=scale_range.lower[0], color=ORANGE)
         kinds = np.where(shares == 0, "stands", np.where(shares == 1, "falls", "by chance"))
         for name, colour in SCAN_COLOURS.items():
-            at = found.scales[kinds == name]
+            scales = found.scales[kinds == name]
             look: Look = {"markersize": 4, "color": "0.3", "markerfacecolor": colour, "markeredgewidth": 0.6}
-            ax.plot(at, np.full(len(at), row), "o", label=None if row else name, zorder=5, **look)
+            ax.plot(scales, np.full(len(scales), row), "o", label=None if row else name, zorder=5, **look)
     ax.set_yticks(range(len(found.records)), [folded(name) for name in found.records])
     ax.set(ylim=(len(found.records) - 0.4, -0.6), xlabel=f"scale{f' [{unit}]' if unit else ''}")
     columns = {"ncols": 3, "columnspacing": 1.0, "handletextpad": 0.2, "borderaxespad": 0.2}

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ..contacts.files import replacing
-from ..quantities import require_kind, require_path
+from ..quantities import require_kind, require_path, require_text, shown
 from ..result.response import Response
 
 BLACK, ORANGE, BLUE, PURPLE, GREEN = "#262626", "#d97706", "#1f6fc4", "#7a2a6b", "#3a9d7a"
@@ -84,9 +84,21 @@ def styles_of(responses: Sequence[Response], labels: Sequence[str] | None = None
     """The line style of each response: that of its solver, or with labels one of its own."""
     if labels is None:
         return [STYLES.get(response.solver, {"label": response.solver}) for response in responses]
+    checked = require_labels(labels, responses)
+    return [OWN[i % len(OWN)] | {"label": folded(label)} for i, label in enumerate(checked)]
+
+
+def require_labels(labels: object, responses: Sequence[Response]) -> list[str]:
+    """Labels of responses, a text for each.
+
+    Raises:
+        TypeError, ValueError: if they are not texts, or another number of them.
+    """
+    if isinstance(labels, str) or not isinstance(labels, Sequence):
+        raise TypeError(f"labels = {shown(labels)} is not a sequence of texts")
     if len(labels) != len(responses):
         raise ValueError(f"labels has {len(labels)} texts for {len(responses)} responses; one for each is needed")
-    return [OWN[i % len(OWN)] | {"label": folded(label)} for i, label in enumerate(labels)]
+    return [require_text(f"labels[{i}]", label) for i, label in enumerate(labels)]
 
 
 def plain_names(names: Iterable[str]) -> dict[str, str]:

@@ -65,9 +65,9 @@ def surroundings(ax: Axes, case: Case, bodies: Bodies) -> Update:
     updates = [_openings(ax, case, moving)]
     for tie, text in zip(ties, tie_texts(ties, left, height), strict=True):
         updates.append(anchored(ax, moving, tie, markersize=6))
-        at = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
+        place = left + 0.02 * (right - left), tie.height + max(tie.rise, 0.0)
         look = {"fontsize": 8, "color": tie.colour, "va": "bottom", "zorder": 6}
-        note = ax.annotate(text, at, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
+        note = ax.annotate(text, place, (0, 3), textcoords="offset points", **look)  # type: ignore[arg-type]
         note.set_bbox(BEHIND)
     updates += [_force(ax, case, effect, force, moving) for effect, force in forces]
     updates += [_mass(ax, added, moving) for added in case.wall.masses if added.report_item is not None]
@@ -184,45 +184,47 @@ def _arrange(figure: Figure, title: str, openings: Sequence[str], notes: Sequenc
     """
     left, right = figure.axes
     wide, tall, long = (float(np.ptp(limits)) for limits in (left.get_xlim(), left.get_ylim(), right.get_xlim()))
-    written = LEADING + max(width_of(figure, text, SMALL) for _, text in notes) if notes else 0.0
+    note_width = LEADING + max(width_of(figure, text, SMALL) for _, text in notes) if notes else 0.0
     scale = min(TALLEST / tall, LARGEST / wide)  # [inch/m]
-    one = (WIDEST - 3 * EDGE - APART - written) / (wide + long)
-    if one * tall >= LEAST:
-        scale = min(scale, one)
+    common = (WIDEST - 3 * EDGE - APART - note_width) / (wide + long)
+    if common * tall >= LEAST:
+        scale = min(scale, common)
     column = EDGE + scale * wide + EDGE
-    beside = column + APART + EDGE + written
-    sizes = wrapped("\n".join(openings), max(1.5, WIDEST - beside), SMALL)
-    written = width_of(figure, sizes, SMALL)
-    smaller = min(scale, max(1.0, WIDEST - beside) / long)
-    right.set_title("elevation" + f", {scale / smaller:.2g} times smaller" * (smaller < 0.999 * scale), fontsize=9)
-    across = max(smaller * long, written)
-    width = max(5.0, beside + across)
+    text_start = column + APART + EDGE + note_width
+    sizes = wrapped("\n".join(openings), max(1.5, WIDEST - text_start), SMALL)
+    elevation_scale = min(scale, max(1.0, WIDEST - text_start) / long)
+    smaller = f", {scale / elevation_scale:.2g} times smaller" if elevation_scale < 0.999 * scale else ""
+    right.set_title(f"elevation{smaller}", fontsize=9)
+    text_width = max(elevation_scale * long, width_of(figure, sizes, SMALL))
+    width = max(5.0, text_start + text_width)
     lines = len(sizes.splitlines())
-    below, room = EDGE + LINE * lines + 0.5 * LINE * bool(lines), LINE * sum(2 + text.count("\n") for _, text in notes)
-    room = max(scale * tall, room)
-    above = 72 * (room - scale * tall)
-    left.set_title("section; outwards is to the right", fontsize=9, loc="left", pad=6 + above)
+    room_below = EDGE + LINE * lines + 0.5 * LINE * bool(lines)
+    drawing_height = max(scale * tall, LINE * sum(2 + text.count("\n") for _, text in notes))
+    title_pad = 72 * (drawing_height - scale * tall)
+    left.set_title("section; outwards is to the right", fontsize=9, loc="left", pad=6 + title_pad)
     figure.set_size_inches(width, 1.0)
-    height = below + room + 0.3 + write_title(figure, title)
+    height = room_below + drawing_height + 0.3 + write_title(figure, title)
     figure.set_size_inches(width, height)
-    middle = width - EDGE - 0.5 * across
-    for ax, one, start in ((left, scale, EDGE), (right, smaller, middle - 0.5 * smaller * long)):
+    text_middle = width - EDGE - 0.5 * text_width
+    elevation_start = text_middle - 0.5 * elevation_scale * long
+    for ax, own_scale, start in ((left, scale, EDGE), (right, elevation_scale, elevation_start)):
         (x0, x1), (low, high) = ax.get_xlim(), ax.get_ylim()
-        bottom = below + (one - scale) * low
-        ax.set_position((start / width, bottom / height, one * (x1 - x0) / width, one * (high - low) / height))
+        bottom = room_below + (own_scale - scale) * low
+        size = own_scale * (x1 - x0) / width, own_scale * (high - low) / height
+        ax.set_position((start / width, bottom / height, *size))
         ax.axis("off")
-    place, coordinates = (72 * middle, 72 * (EDGE + LINE * lines)), "figure points"
+    place, coordinates = (72 * text_middle, 72 * (EDGE + LINE * lines)), "figure points"
     right.annotate(sizes, place, xycoords=coordinates, fontsize=SMALL, ha="center", va="top", annotation_clip=False)
-    _notes(left, notes, column, (below, below + room))
+    _notes(left, notes, column, (room_below, room_below + drawing_height))
 
 
-def _across(ax: Axes, start: tuple[float, float], end: tuple[float, float], text: str) -> None:
+def _dimension(ax: Axes, start: tuple[float, float], end: tuple[float, float], text: str) -> None:
     """A dimension with its text in the middle."""
     ax.annotate("", start, end, arrowprops=DIMENSION | {"linewidth": 0.8})
     middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
     level = start[1] == end[1]
-    offset, turn = ((0, -3), 0) if level else ((-3, 0), 90)
-    note = ax.annotate(text, middle, offset, textcoords="offset points", fontsize=8, rotation=turn, zorder=9)
+    offset, rotation = ((0, -3), 0) if level else ((-3, 0), 90)
+    note = ax.annotate(text, middle, offset, textcoords="offset points", fontsize=8, rotation=rotation, zorder=9)
     note.set(ha="center" if level else "right", va="top" if level else "center")
     if not level:
         note.set_bbox(BEHIND)
@@ -238,10 +240,10 @@ def section(ax: Axes, case: Case, stop: str = "stop") -> None:
         text.remove()  # it is in the notes
     make_static(ax, others)
     half = case.block.b
-    _across(ax, (-half, -0.02 * height), (half, -0.02 * height), f"{2 * half:g} m")
+    _dimension(ax, (-half, -0.02 * height), (half, -0.02 * height), f"{2 * half:g} m")
     if case.stop_top is not None and case.stop_top < height:
-        at = -half - 0.12 * height
-        _across(ax, (at, 0.0), (at, case.stop_top), f"{stop} {case.stop_top:g} m")
+        x = -half - 0.12 * height
+        _dimension(ax, (x, 0.0), (x, case.stop_top), f"{stop} {case.stop_top:g} m")
     ax.plot(wall.centroid_offset, wall.centroid_height, marker="+", color="0.15", markersize=7, zorder=7)
 
 
@@ -250,9 +252,9 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
     figure = figure_of(ax)
     inch = figure.dpi_scale_trans.inverted()
     halves = [0.5 * LINE * (2 + text.count("\n")) for _, text in notes]
-    wanted = [float(inch.transform(ax.transData.transform(place))[1]) for place, _ in notes]
+    heights = [float(inch.transform(ax.transData.transform(place))[1]) for place, _ in notes]
     levels, low = [], ends[0]
-    for half, level in zip(halves, wanted, strict=True):
+    for half, level in zip(halves, heights, strict=True):
         levels.append(max(level, low + half))
         low = levels[-1] + half
     high = ends[1]
@@ -306,8 +308,8 @@ def elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
         hole.set(facecolor="white", edgecolor="0.35")
         ax.add_patch(hole)
     edge = -0.5 * length - 0.5 * side
-    _across(ax, (edge, 0.0), (edge, height), f"{height:g} m")
-    _across(ax, (-0.5 * length, -0.02 * height), (0.5 * length, -0.02 * height), f"{length:g} m")
+    _dimension(ax, (edge, 0.0), (edge, height), f"{height:g} m")
+    _dimension(ax, (-0.5 * length, -0.02 * height), (0.5 * length, -0.02 * height), f"{length:g} m")
     ax.plot([-0.5 * length - side, 0.5 * length + side], [0.0, 0.0], color="0.15", linewidth=1.0)
     ax.set(xlim=(-0.5 * length - side, 0.5 * length + side), ylim=ends, title="elevation")
 

@@ -162,16 +162,15 @@ def subject_groups(subjects: Sequence[tuple[str, object]], left_out: str, words:
 
 def vertical_bending_inputs(bending: VerticalBending, words: Words) -> list[Input]:
     """A wall that bends between floors."""
-    lengths = [("bearing", bending.lever, "m"), ("crack_height", bending.crack_height, "m")]
-    numbers = [("load", bending.load, "N"), *lengths]
-    return [*block_inputs(bending.wall, words), *_number_inputs(numbers, words), *effect_inputs(bending.effects, words)]
+    values = [("load", bending.load, "N"), ("bearing", bending.lever, "m"), ("crack_height", bending.crack_height, "m")]
+    return [*block_inputs(bending.wall, words), *_numbers(values, words), *effect_inputs(bending.effects, words)]
 
 
 def horizontal_bending_inputs(bending: HorizontalBending, words: Words) -> list[Input]:
     """A wall that bends between side walls."""
     crack = 0.5 * bending.wall.length if bending.crack is None else bending.crack
-    numbers = [("thrust", bending.thrust, "N"), ("crack", crack, "m")]
-    return [*block_inputs(bending.wall, words), *_number_inputs(numbers, words)]
+    values = [("thrust", bending.thrust, "N"), ("crack", crack, "m")]
+    return [*block_inputs(bending.wall, words), *_numbers(values, words)]
 
 
 def corner_inputs(corner: Corner, words: Words) -> list[Input]:
@@ -180,10 +179,10 @@ def corner_inputs(corner: Corner, words: Words) -> list[Input]:
     effects = effect_inputs(corner.effects, words)
     ties = {f"tie_{i}" for i in range(len(corner.effects))}
     renamed = [row._replace(name=words("rods", name=row.name)) if row.key in ties else row for row in effects]
-    return [*_number_inputs(numbers, words), *renamed]
+    return [*_numbers(numbers, words), *renamed]
 
 
-def _number_inputs(numbers: Iterable[tuple[str, float, str]], words: Words, *, computed: bool = False) -> list[Input]:
+def _numbers(numbers: Iterable[tuple[str, float, str]], words: Words, *, computed: bool = False) -> list[Input]:
     """Numbers with their keys and units as inputs; those that are computed have fewer digits."""
     digits, basis = (FOUND, "computed") if computed else (GIVEN, "not_given")
     quantities = ((key, words.quantity(value, unit, digits)) for key, value, unit in numbers)
@@ -199,7 +198,7 @@ def block_inputs(block: Block, words: Words) -> list[Input]:
         ("density", block.density, "kg/m3"),
         ("inset", block.inset, "m"),
     )
-    rows = _number_inputs(sizes, words)
+    rows = _numbers(sizes, words)
     if block.profile is not None:
         steps = [words("profile", z=words.quantity(z, "m"), t=words.quantity(t, "m")) for z, t in block.profile]
         rows.append(Input("profile", words("in_profile"), "; ".join(steps)))
@@ -232,7 +231,7 @@ def case_inputs(case: Case, words: Words) -> list[Input]:
         ("p", wall.p, "rad/s"),
     )
     chosen = [*block_inputs(case.block, words), side._replace(basis="assumed") if is_whole else side]
-    return [*chosen, *_number_inputs(derived, words, computed=True), *effect_inputs(case.effects, words)]
+    return [*chosen, *_numbers(derived, words, computed=True), *effect_inputs(case.effects, words)]
 
 
 def masonry_inputs(masonry: Masonry, words: Words) -> list[Input]:
@@ -460,7 +459,7 @@ def demand_inputs(demand: Demand, words: Words) -> list[Input]:
             for key, values, unit in modes
         ]
         rows.insert(1, Input("xi_k", words("in_xi_k"), words.share(demand.damping)))
-        peak = _number_inputs((("peak", demand.peak, "m/s2"),), words, computed=True)
+        peak = _numbers((("peak", demand.peak, "m/s2"),), words, computed=True)
         return [*demand_inputs(demand.ground, words), *rows, *peak]
     if isinstance(demand, CodeSpectrum):
         return _code_spectrum_inputs(demand, words)
@@ -475,7 +474,7 @@ def demand_inputs(demand: Demand, words: Words) -> list[Input]:
         sizes = (("peak", demand.peak, "m/s2"), ("duration", demand.duration, "s"), ("step", demand.dt, "s"))
         return [
             Input("record", words("in_record"), record_name(demand, words)),
-            *_number_inputs(sizes, words),
+            *_numbers(sizes, words),
             *header_inputs(demand, words),
         ]
     return [Input("spectrum", words("in_spectrum"), words("own_spectrum"))]
@@ -487,7 +486,7 @@ def _code_spectrum_inputs(spectrum: CodeSpectrum, words: Words) -> list[Input]:
     rows = [Input("spectrum", words("in_spectrum"), spectrum.code), Input("ag", words("in_ag"), ag)]
     rows.append(Input("F0", words("in_F0"), words.number(spectrum.amplification)))
     if spectrum.Tc is not None:
-        rows += _number_inputs((("Tc", spectrum.Tc, "s"),), words)
+        rows += _numbers((("Tc", spectrum.Tc, "s"),), words)
     for key in ("soil", "topography"):
         if value := getattr(spectrum, key):
             rows.append(Input(key, words(f"in_{key}"), value))

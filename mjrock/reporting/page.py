@@ -132,7 +132,7 @@ def report(
         *runs_section(parts, words),
         *[piece for key, items in required_sections(sections).items() for piece in further_section(key, items, words)],
         *judgement_section(parts, runs, mechanisms, words, inputs.massless_load_names(subjects, words)),
-        *inputs_section(input_groups, bases, words),
+        *input_section(input_groups, bases, words),
         *(piece for input_table in tables for piece in input_table_parts(input_table, words)),
         *run_tables(parts, words),
     ]
@@ -495,12 +495,10 @@ def input_table_parts(input_table: InputTable, words: Words) -> list[Markup]:
     return [heading, table(listing.columns, listing.rows, kind="runs")]
 
 
-def inputs_section(
-    groups_by_heading: Mapping[str, Sequence[inputs.InputGroup]], bases: Mapping[str, str], words: Words
-) -> list[Markup]:
+def input_section(given: Mapping[str, list[inputs.InputGroup]], bases: Mapping[str, str], words: Words) -> list[Markup]:
     """The inputs and what they rest on."""
     pieces = [element("h2", words("inputs"))]
-    for heading, groups in groups_by_heading.items():
+    for heading, groups in given.items():
         for columns in inputs.side_by_side([group for group in groups if group.rows]):
             cells = []
             for row in columns.rows:

@@ -187,7 +187,7 @@ def test_a_task_that_is_left_ends_with_its_process(server):
 
 
 def test_a_task_that_takes_too_long_ends(server, monkeypatch):
-    monkeypatch.setattr(module, "QUICK", 0.3)
+    monkeypatch.setattr(module, "TASK_LIMIT", 0.3)
     begun = parts(server, "wait", {})
     assert "took longer than 0.3 s" in begun[1]["error"]
     assert gone(begun[0]["process"])
@@ -228,9 +228,9 @@ def test_what_a_run_keeps_has_a_name_of_its_own_and_comes_back_with_it(server):
 
 def test_the_oldest_of_what_is_kept_goes(monkeypatch):
     store = Store()
-    names = [store.put(bytes(1)) for _ in range(module.KEPT + 1)]
+    names = [store.put(bytes(1)) for _ in range(module.MOST_KEPT + 1)]
     assert [store.get(name) is None for name in names[:2]] == [True, False]
-    monkeypatch.setattr(module, "KEPT_BYTES", 10)
+    monkeypatch.setattr(module, "MOST_KEPT_BYTES", 10)
     last = store.put(bytes(8))
     assert (store.get(names[-1]), store.get(last)) == (bytes(1), bytes(8))
     assert store.get(names[-3]) is None

@@ -235,7 +235,7 @@ def _write(owner, name, value):
         ({"c": 1.0, "contacts": 1.5}, "contacts = 1.5 is not a whole number"),
         ({"c": 1.0, "timestep": 1.0}, "stiffness k = 1e.06 N/m at timestep = 1 s .* the longest step is"),
         ({"c": 1e12}, "damping c = 1e.12 N s/m at timestep = 1e-05 s .* lower the timestep"),
-        ({"c": 1.0, "newmark_beta": 1e6, "timestep": 1e-3}, "newmark_beta = 1e.06 asks for more inertia"),
+        ({"c": 1.0, "newmark_beta": 1e6, "timestep": 1e-3}, "newmark_beta = 1e.06 requires more inertia"),
     ],
 )
 def test_what_cannot_be_is_refused(asked, complaint):

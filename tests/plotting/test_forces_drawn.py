@@ -93,7 +93,7 @@ def test_a_film_shows_the_line_where_blocks_have_gone(in_space):
     moved[-1, :, 0] += 0.01
     of = (Solids if in_space else Bodies).of(run, 50.0, limits=[(-1, 2), *[(-1, 1)] * in_space, (-0.5, 2)])
     of = replace(of, moving=replace(of.moving, t=run.t[[0, -1]], pose=moved[[0, -1]]))
-    figure, update = animation.scene(of, [], run.case, acting=(run, "thrust"))
+    figure, update = animation.scene(of, [], run.case, response=run, forces="thrust")
     ax = figure.axes[0]
     places = np.insert(PLACES, 1, 0.0, axis=1) if in_space else PLACES
     for frame, shift in ((0, 0.0), (1, 0.5)):

@@ -298,7 +298,7 @@ const middleOfBox = () =>
 function fitCamera(camera, controls) {
   const [low, high] = run.box,
     middle = middleOfBox(),
-    eye = new THREE.Vector3(...run.way).normalize();
+    eye = new THREE.Vector3(...run.camera).normalize();
   const right = new THREE.Vector3(0, 0, 1).cross(eye).normalize(),
     up = eye.clone().cross(right);
   const tall = Math.tan(NARROW / 2) * 0.86,

@@ -81,7 +81,7 @@ class Wedge(CombinedEffect):
         """All wedges behind a facade, as two masses that move with it.
 
         They have the mass, the centroid and the moment of inertia of the wedges, which is all that a rigid body in the
-        plane is: half of the mass each, on the level of the centroid, as far apart as the moment of inertia asks for.
+        plane is: half of the mass each, on the level of the centroid, as far apart as the moment of inertia requires.
 
         Raises:
             TypeError, ValueError: for what is no wall, a wedge higher than it, or one that reaches too far behind it.

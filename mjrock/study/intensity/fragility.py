@@ -124,7 +124,7 @@ class Fragility(NotebookPicture):
 
     def _reflected_curves(self, confidence: float) -> Array:
         """Median and dispersion of the resamples reflected at the fit, shape (m, 2), the dispersions spread as much as
-        their 90 % interval asks for."""
+        their 90 % interval requires."""
         assert self.resamples is not None
         fitted, drawn = np.log([self.median, self.dispersion]), _log(self.resamples)
         from_fit = _wider(SPREAD, self.groups) * (fitted - drawn)
