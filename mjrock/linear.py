@@ -131,6 +131,13 @@ def times(factors: Array, rows: csr_array) -> csr_array:
     return csr_array((values, rows.indices, rows.indptr), shape=rows.shape)
 
 
+def times_both(factors: Array, matrix: csr_array) -> csr_array:
+    """The rows and the columns of a matrix, each times its factor."""
+    product = times(factors, matrix)
+    product.data *= factors[product.indices]
+    return product
+
+
 def sprung(rates: csr_array, springs: Array) -> csr_array:
     """Stiffness of springs [N/m] whose rates are these."""
     return csr_array(times(springs, rates).T @ rates)
@@ -218,8 +225,7 @@ def loose(rows: csr_array) -> Array:
 
 def highest_square(stiffness: csr_array, masses: Array) -> float:
     """The highest square of a natural frequency [rad2/s2]."""
-    root = diags_array(1 / np.sqrt(masses))
-    matrix = csr_array(root @ stiffness @ root)
+    matrix = times_both(1 / np.sqrt(masses), stiffness)
     if len(masses) <= SOLVED_IN_FULL:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(len(masses))
@@ -239,10 +245,11 @@ def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: f
         grip: what is held.
         rigid: square up to which a motion is one that nothing resists, over the highest [-].
     """
-    n, root = len(masses), diags_array(1 / np.sqrt(masses))
-    stiffness, grip = csr_array(root @ stiffness @ root), csr_array(grip @ root)
+    n, root = len(masses), 1 / np.sqrt(masses)
+    stiffness = times_both(root, stiffness)
     if n <= SOLVED_IN_FULL:
-        return _lowest_in_full(stiffness, grip, rigid)
+        return _lowest_in_full(stiffness, grip.toarray() * root, rigid)
+    grip = csr_array(grip @ diags_array(root))
     # a bound is enough for the shift, and takes no search
     highest = highest_square(stiffness, np.ones(n)) if n <= MANY_UNKNOWNS else float(abs(stiffness).sum(axis=1).max())
     if highest == 0:
@@ -260,12 +267,12 @@ def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: f
         if resisted.size:
             return float(resisted[0])
         count *= 4
-    return _lowest_in_full(stiffness, grip, rigid)
+    return _lowest_in_full(stiffness, grip.toarray(), rigid)
 
 
-def _lowest_in_full(stiffness: csr_array, grip: csr_array, rigid: float) -> float:
+def _lowest_in_full(stiffness: csr_array, grip: Array, rigid: float) -> float:
     """As `lowest_square`, of unit masses, by all squares of frequencies."""
-    free = scipy.linalg.null_space(grip.toarray(), rcond=DEPENDENT)
+    free = scipy.linalg.null_space(grip, rcond=DEPENDENT)
     squares = np.linalg.eigvalsh(free.T @ (stiffness @ free)) if free.shape[1] else np.zeros(0)
     squares = squares[squares > rigid * max(squares, default=0.0)]
     return float(squares[0]) if squares.size else 0.0

@@ -349,6 +349,8 @@ class Links:
 
     def chosen(self, some: Flags) -> Links:
         """Some of the links."""
+        if some.all():
+            return self
         numbers = np.flatnonzero(some)
         arrays = (entry.name for entry in fields(self) if entry.name not in ("names", "user_laws"))
         user_laws = tuple(self.user_laws[i] for i in numbers) if self.user_laws else ()

@@ -30,6 +30,7 @@ from ..geometry.frames import (
 )
 from ..geometry.kinematics import (
     AppliedForces,
+    Meeting,
     Places,
     Ties,
     depth,
@@ -44,12 +45,13 @@ from ..geometry.kinematics import (
     where_friction_acts,
 )
 from ..geometry.poses import at_rest
-from ..geometry.vectors import dot, minus, plus, vector
+from ..geometry.vectors import Vector, dot, minus, plus, vector
 from ..linear import entries, highest_square, of_pairs, sprung, summed
 from ..problem.masonry.laws.joint_law import LawRows, law_rows, resting, stored, tangent_stiffness
 from ..problem.masonry.laws.own_law import OwnSprings
 from ..quantities import GRAVITY, Array, Flags, Integers, frozen
 from .masses import coupling
+from .pattern import PairPattern
 
 NO_PRODUCTS: Array = np.empty((0, 3))
 """Of bodies of the plane, and of bodies of space whose axes are principal ones."""
@@ -240,11 +242,14 @@ class Potential:
 
     def rates(self, pose: Array) -> csr_array:
         """Rates of the openings for unit velocities, shape (m + t, n nv)."""
+        return entries(self.pair_rates(pose), self._bodies, len(self.structure.masses))
+
+    def pair_rates(self, pose: Array) -> Array:
+        """The same for the velocities of the two bodies of each contact and tie, shape (m + t, 2, nv)."""
         places, ties, masses = self.structure.places, self.structure.ties, self.structure.masses
-        bodies, none = self._bodies, np.zeros_like(masses)
-        rates = np.zeros((*bodies.shape, places.freedom.nv))
-        _rates(places, ties, frames_of(pose, places.freedom), np.zeros_like(masses), none, rates)
-        return entries(rates, bodies, len(masses))
+        rates = np.zeros((*self._bodies.shape, places.freedom.nv))
+        _rates(places, ties, frames_of(pose, places.freedom), np.zeros_like(masses), np.zeros_like(masses), rates)
+        return rates
 
     def slip_rates(self, pose: Array) -> tuple[csr_array, ...]:
         """Rates at which the points move along their faces for unit velocities, shape (m, n nv).
@@ -252,11 +257,21 @@ class Potential:
         One matrix for each direction along a face: one in the plane, and in space the two `tangents` of the face at
         rest, which turn with its body, where friction acts: halfway between the point and the face.
         """
-        places, masses = self.structure.places._replace(radius=0.0), self.structure.masses
-        bodies, freedom = self._bodies[: len(places.body)], places.freedom
-        rates = np.zeros((freedom.translations - 1, *bodies.shape, freedom.nv))
-        _slip_rates(places, frames_of(pose, freedom), np.zeros_like(masses), rates)
-        return tuple(entries(values, bodies, len(masses)) for values in rates)
+        rates, masses = self.pair_slip_rates(pose), self.structure.masses
+        return tuple(entries(values, self._bodies[: len(values)], len(masses)) for values in rates)
+
+    def pair_slip_rates(self, pose: Array) -> Array:
+        """The same for the velocities of the two bodies of each contact, shape (directions, m, 2, nv)."""
+        places, freedom = self.structure.places._replace(radius=0.0), self.structure.places.freedom
+        rates = np.zeros((freedom.translations - 1, len(places.body), 2, freedom.nv))
+        _slip_rates(places, frames_of(pose, freedom), np.zeros_like(self.structure.masses), rates)
+        return rates
+
+    @cached_property
+    def pattern(self) -> PairPattern:
+        """Which entries a stiffness of the contacts and ties may have."""
+        nv = self.structure.places.freedom.nv
+        return PairPattern(self._bodies, nv, len(self.structure.masses) // nv)
 
     def slips(self, pose: Array) -> Array:
         """Displacement of each point along its face from rest, see `slip_rates` [m], shape (m, directions)."""
@@ -305,7 +320,7 @@ class Potential:
         """Stiffness of springs of k [N/m], shape (m + t,), at the openings' rates, shape (n nv, n nv)."""
         return sprung(self.rates(pose), springs)
 
-    def curvature(self, pose: Array, drag: Array | None = None) -> csr_array:
+    def curvature(self, pose: Array, drag: Array | None = None, pushes: Array | None = None) -> csr_array:
         """Geometric stiffness: the second derivatives of the openings and slips, times the forces, shape (n nv, n nv).
 
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
@@ -317,11 +332,12 @@ class Potential:
             pose: of shape (n nq,).
             drag: friction on the bodies of the points along the tangential directions of `slip_rates` [N], shape
                 (m, directions), or None.
+            pushes: those at the pose, if they are known.
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
         frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
-        pushes = self.pushes(pose)
+        pushes = self.pushes(pose) if pushes is None else pushes
         drag = np.zeros((len(places.body), places.freedom.translations - 1)) if drag is None else drag
         bends = pushes != 0
         bends[: len(drag)] |= drag.any(axis=1)
@@ -333,6 +349,8 @@ class Potential:
             _curvatures(places, ties, frames, none, (pushes, drag), some, bent)
             parts.append(of_pairs(bent, self._bodies[some], len(masses)))
         of_springs = parts[0] if len(parts) == 1 else summed(parts)
+        if not len(forces.body):
+            return of_springs
         return csr_array(of_springs + _turning_forces(forces, frames, len(masses)))
 
     def hessian(self, pose: Array) -> csr_array:
@@ -346,7 +364,7 @@ class Potential:
 def _turning_forces(forces: AppliedForces, frames: Array, unknowns: int) -> csr_array:
     """Second derivatives of the energy of the constant forces, shape (n nv, n nv)."""
     axes = forces.axes
-    bent, nv = np.zeros((unknowns, unknowns)) if len(axes) == 3 and len(forces.body) else np.zeros(0), velocities(axes)
+    bent, nv = np.zeros((unknowns, unknowns)) if len(axes) == 3 else np.zeros(0), velocities(axes)
     turning = np.zeros(unknowns)
     for i, body in enumerate(forces.body):
         at, force = vector(forces.at, i, axes), vector(forces.force, i, axes)
@@ -431,6 +449,8 @@ def _curvatures(
     for slot, i in enumerate(which):
         body, other = _bodies(places, ties, i)
         count = 2 * nv if other >= 0 else nv
+        if i < len(drag):
+            meets, tangents = meeting(places, i, frames), tangents_at(places, i, frames)
         for p in range(count):
             for r in range(p, count):
                 row = nv * body + p if p < nv else nv * other + p - nv
@@ -438,20 +458,24 @@ def _curvatures(
                 for sign in (1.0, -1.0):
                     unit[row] += 1.0
                     unit[column] += sign
-                    bent = push[i] * opening(places, ties, i, frames, unit, unit).swept
                     if i < len(drag):
-                        bent += swept_by_friction(places, i, frames, unit, drag)
+                        bent = push[i] * swept_along(places, i, meets, frames, unit, meets.normal)
+                        bent += swept_by_friction(places, i, meets, tangents, frames, unit, drag[i])
+                    else:
+                        bent = push[i] * slack(ties, i - len(drag), frames, unit, unit).swept
                     curvature[slot, p, r] -= 0.25 * sign * bent
                     unit[row], unit[column] = 0.0, 0.0
                 curvature[slot, r, p] = curvature[slot, p, r]
 
 
 @inlined
-def swept_by_friction(places: Places, i: int, frames: Array, v: Array, drag: Array) -> float:
+def swept_by_friction(
+    places: Places, i: int, meets: Meeting, tangents: tuple[Vector, ...], frames: Array, v: Array, drag: Array
+) -> float:
     """Friction times the second rates of slip, the part of it that is quadratic in the velocities."""
-    meets, tangents, power = meeting(places, i, frames), tangents_at(places, i, frames), 0.0
+    power = 0.0
     for k in range(len(tangents)):
-        power += drag[i, k] * swept_along(places, i, meets, frames, v, tangents[k])
+        power += drag[k] * swept_along(places, i, meets, frames, v, tangents[k])
     return power
 
 

@@ -24,15 +24,16 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import csc_array, csr_array, diags_array, vstack
+from scipy.sparse import csr_array
 
 from ..bars import Bar
 from ..geometry.frames import SPACE
 from ..geometry.kinematics import Places, gaps
 from ..geometry.poses import moved, turned
-from ..linear import lowest_mode, solution, sprung, times
+from ..linear import lowest_mode, solution
 from ..problem.masonry.laws.joint_law import shear_limit
-from ..quantities import GRAVITY, Array, Flags
+from ..quantities import GRAVITY, Array, Flags, Integers
+from .pattern import PairPattern, Springs
 from .potential import Potential, Structure
 
 FORCE_TOLERANCE = 1e-9
@@ -119,25 +120,40 @@ class Sliders(NamedTuple):
     Args:
         stiffness: of the springs [N/m], shape (m,).
         limit: friction that each contact can have, negative for one that is open or smooth [N], shape (m,).
-        shares: share of the slip of every point in the stretch of each spring [-], shape (m, m).
+        rubs: which contacts have friction, shape (m,).
+        joint: number of the joint of each, whose points share their slip, shape (m,), or None where none do.
     """
 
     stiffness: Array
     limit: Array
-    shares: csr_array
+    rubs: Flags
+    joint: Integers | None = None
+
+    def shared(self, values: Array) -> Array:
+        """Of values of all points those that the springs have: their own or the mean of their joint, zero where a point
+        does not rub, shape (m, ...)."""
+        rubs = self.rubs.reshape(-1, *[1] * (values.ndim - 1))
+        if self.joint is None:
+            return np.where(rubs, values, 0.0)
+        means = np.zeros_like(values)
+        share = 1 / np.maximum(np.bincount(self.joint, self.rubs), 1.0)[self.joint].reshape(rubs.shape)
+        np.add.at(means, self.joint, np.where(rubs, share * values, 0.0))
+        return np.where(rubs, means[self.joint], 0.0)
 
 
 class PointFriction(NamedTuple):
     """Friction of the points at a pose, in the axes of their faces, see `Potential.slip_rates`.
 
     Args:
-        rates: of the slips for unit velocities, one matrix for each tangential direction, shape (m, n nv).
+        pattern: of the stiffness.
+        rates: of the slips for unit velocities of the two bodies, shape (directions, m, 2, nv).
         drag: friction on the bodies of the points [N], shape (m, directions).
         stiffness: of the springs, and where a point slips its friction over its slip [N/m], shape (m,).
         slips: whether a point slips, shape (m,).
     """
 
-    rates: tuple[csr_array, ...]
+    pattern: PairPattern
+    rates: Array
     drag: Array
     stiffness: Array
     slips: Flags
@@ -145,18 +161,17 @@ class PointFriction(NamedTuple):
     @property
     def generalised(self) -> Array:
         """Generalised force of the friction, shape (n nv,)."""
-        return np.sum([rates.T @ drag for rates, drag in zip(self.rates, self.drag.T, strict=True)], axis=0)
+        return np.sum([*map(self.pattern.forces, self.rates, self.drag.T)], axis=0)
 
     @property
     def slipping(self) -> Flags:
         """Which points slip and have friction, shape (m,)."""
         return np.asarray(self.slips & (self.stiffness > 0))
 
-    def along(self, slips: Flags) -> csr_array:
-        """Rates of slip along the direction of friction, of the points that slip, shape (points, n nv)."""
+    def along(self, slips: Flags) -> Array:
+        """Rates of slip along the direction of friction, of the points that slip, shape (points, 2, nv)."""
         directions = (self.drag[slips] / np.linalg.norm(self.drag[slips], axis=1)[:, None]).T
-        rows = (times(direction, rates[slips]) for direction, rates in zip(directions, self.rates, strict=True))
-        return csr_array(sum(rows, start=csr_array((int(slips.sum()), self.rates[0].shape[1]))))
+        return np.asarray((directions[..., None, None] * self.rates[:, slips]).sum(axis=0))
 
 
 class Trial(NamedTuple):
@@ -166,7 +181,7 @@ class Trial(NamedTuple):
         pose: shape (n nq,).
         closed: which springs act, shape (m + t,).
         springs: their stiffness [N/m], shape (m + t,).
-        rates: of their openings for unit velocities, shape (m + t, n nv).
+        rates: of their openings for unit velocities of the two bodies, shape (m + t, 2, nv).
         push: force of each [N], shape (m + t,).
         sliders, friction: the friction.
         missing: generalised force that is missing, moments over the size of the body [N], shape (n nv,).
@@ -175,7 +190,7 @@ class Trial(NamedTuple):
     pose: Array
     closed: Flags
     springs: Array
-    rates: csr_array
+    rates: Array
     push: Array
     sliders: Sliders
     friction: PointFriction
@@ -283,7 +298,7 @@ def search_pose(potential: Potential, search: Search, start: Array | None = None
             loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
         previous = trial.missing_sum
         springs = np.where(trial.closed, trial.springs, STIFFNESS_OF_OPEN * trial.springs)
-        stiffness = sprung(trial.rates, springs) + shear_stiffness(trial.friction, share)
+        stiffness = normal_stiffness(potential, trial, springs) + shear_stiffness(trial.friction, share)
         motion = newton_motion(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
         trial = trial_at(potential, search, lowering_step(potential, trial.pose, motion, trial.sliders))
         if loose > MOST_LOOSE or poses - since >= STALLED or has_fallen(potential, trial.pose):
@@ -346,46 +361,57 @@ def exact_step(potential: Potential, search: Search, trial: Trial) -> Trial | No
 def trial_at(potential: Potential, search: Search, pose: Array, touches: bool = False) -> Trial:
     """The forces at a pose of shape (n nq,); where the search starts, all contacts touch."""
     search.bar.add()
-    openings, rates = potential.openings(pose), potential.rates(pose)
+    openings, rates = potential.openings(pose), potential.pair_rates(pose)
     closed = touching(potential, pose) if touches else potential.closed(openings)
     push = potential.forces_at(openings)
     sliders = sliders_at(potential.structure.places, search, np.where(closed, push, -1.0)[: len(search.shear)])
     friction = friction_at(potential, pose, sliders)
-    missing = (potential.load(pose) + rates.T @ push + friction.generalised) / sizes(potential)
+    missing = (potential.load(pose) + potential.pattern.forces(rates, push) + friction.generalised) / sizes(potential)
     return Trial(pose, closed, potential.springs_at(openings), rates, push, sliders, friction, missing)
 
 
-def stiffness_at(potential: Potential, search: Search, trial: Trial) -> csr_array:
-    """Derivative of the missing force along a motion, shape (n nv, n nv): the limit of friction grows with the
+def stiffness_at(potential: Potential, search: Search, trial: Trial) -> Array:
+    """Derivative of the missing force along a motion, entries of the pattern: the limit of friction grows with the
     pressure too."""
     places, slipping, m = potential.structure.places, trial.friction.slipping, len(search.shear)
     # open contacts have next to none: more of it would hide that open joints let go of a structure that stands on few
     springs = np.where(trial.closed, trial.springs, LEAST_LOOSE * trial.springs)
-    stiffness = sprung(trial.rates, springs) + curvature(potential, trial) + shear_stiffness(trial.friction, 0.0)
+    stiffness = normal_stiffness(potential, trial, springs) + potential.pattern.taken(curvature(potential, trial))
+    stiffness += shear_stiffness(trial.friction, 0.0)
+    if not slipping.any():
+        return stiffness
     pressed = (trial.push[:m] > 0)[slipping]
     rises = np.where(pressed, shear_limit(places.law, trial.springs[:m])[slipping], 0.0)  # with depth [N/m]
-    return csr_array(stiffness + trial.friction.along(slipping).T @ times(rises, csr_array(trial.rates[:m][slipping])))
+    lengths = rises[:, None, None] * trial.rates[:m][slipping]
+    which, one = np.flatnonzero(slipping), np.ones(len(rises))
+    return stiffness + potential.pattern.sprung((trial.friction.along(slipping), lengths, one, which))
+
+
+def normal_stiffness(potential: Potential, trial: Trial, springs: Array) -> Array:
+    """Stiffness of springs of contacts and ties [N/m], shape (m + t,), entries of the pattern."""
+    return potential.pattern.sprung((trial.rates, trial.rates, springs, slice(None)))
 
 
 def curvature(potential: Potential, trial: Trial) -> csr_array:
     """Geometric stiffness of all forces at a pose, shape (n nv, n nv)."""
-    return potential.curvature(trial.pose, trial.sliders.shares.T @ trial.friction.drag)
+    return potential.curvature(trial.pose, trial.sliders.shared(trial.friction.drag), trial.push)
 
 
-def newton_motion(potential: Potential, stiffness: csr_array, missing: Array, loose: float) -> Array:
+def newton_motion(potential: Potential, stiffness: Array, missing: Array, loose: float) -> Array:
     """The motion that makes up for forces that are missing, shape (n nv,).
 
     Args:
         potential: of the bodies.
-        stiffness: shape (n nv, n nv).
+        stiffness: entries of the pattern.
         missing: shape (n nv,).
         loose: stiffness that is added to the whole diagonal, over the largest there [-].
     """
-    size = sizes(potential)
-    scaled = times(1 / size, csr_array(stiffness))
-    scaled.data *= (1 / size)[scaled.indices]
-    lent = np.full(len(size), loose * float(np.abs(scaled.diagonal()).max()))
-    return solution(csc_array(scaled + diags_array(lent)), missing) / size
+    size, pattern = sizes(potential), potential.pattern
+    scaled = stiffness * (1 / size)[pattern.indices] * np.repeat(1 / size, np.diff(pattern.indptr))
+    scaled[pattern.diagonal] += loose * float(np.abs(scaled[pattern.diagonal]).max())
+    matrix = pattern.matrix(scaled).copy()
+    matrix.eliminate_zeros()
+    return solution(matrix, missing) / size
 
 
 def sizes(potential: Potential) -> Array:
@@ -397,16 +423,10 @@ def sizes(potential: Potential) -> Array:
 
 def sliders_at(contacts: Places, search: Search, push: Array) -> Sliders:
     """Sliders under forces of the contacts, negative where one is open [N], shape (m,)."""
-    bonded, m = contacts.tension > 0, len(push)
-    rubs = bonded | ((push >= 0) & (contacts.friction > 0))
+    rubs = (contacts.tension > 0) | ((push >= 0) & (contacts.friction > 0))
     most = contacts.cohesion + shear_limit(contacts.law, np.maximum(push, 0.0))
     limit = np.where(rubs, most if search.limited else np.inf, -np.inf)
-    if search.limited:
-        shares = csr_array((np.ones(rubs.sum()), np.flatnonzero(rubs), np.append(0, np.cumsum(rubs))), shape=(m, m))
-    else:
-        points = csr_array((rubs.astype(float), (contacts.joint, np.arange(m))))
-        shares = csr_array(points.T @ times(1 / np.maximum(points.sum(axis=1), 1.0), points))
-    return Sliders(search.shear, limit, shares)
+    return Sliders(search.shear, limit, rubs, None if search.limited else contacts.joint)
 
 
 def lowering_step(potential: Potential, pose: Array, motion: Array, sliders: Sliders) -> Array:
@@ -423,29 +443,34 @@ def energy_with(sliders: Sliders, potential: Potential, pose: Array) -> float:
 
     Its negative gradient is the force that is missing.
     """
-    stretch = np.linalg.norm(sliders.shares @ potential.slips(pose), axis=1)
+    stretch = np.linalg.norm(sliders.shared(potential.slips(pose)), axis=1)
     elastic = np.minimum(stretch, np.maximum(sliders.limit, 0.0) / sliders.stiffness)
     return potential.energy(pose) + float((sliders.stiffness * elastic * (stretch - 0.5 * elastic)).sum())
 
 
 def friction_at(potential: Potential, pose: Array, sliders: Sliders) -> PointFriction:
     """Friction at a pose of shape (n nq,)."""
-    stretch = sliders.shares @ potential.slips(pose)
+    stretch = sliders.shared(potential.slips(pose))
     elastic = sliders.stiffness * np.linalg.norm(stretch, axis=1)
     slips = elastic > sliders.limit
     stays = np.where(slips, np.maximum(sliders.limit, 0.0) / np.where(elastic > 0, elastic, 1.0), 1.0)
     stiffness = stays * sliders.stiffness
-    rates = tuple(csr_array(sliders.shares @ rates) for rates in potential.slip_rates(pose))
-    return PointFriction(rates, -stiffness[:, None] * stretch, stiffness, slips)
+    rates = potential.pair_slip_rates(pose)
+    if sliders.joint is not None:  # the body of a point may be either of a joint
+        places = potential.structure.places
+        turned_round = (places.body < places.face_body)[:, None, None]
+        rates = np.array([sliders.shared(np.where(turned_round, each[:, ::-1], each)) for each in rates])
+        rates = np.where(turned_round, rates[:, :, ::-1], rates)
+    return PointFriction(potential.pattern, rates, -stiffness[:, None] * stretch, stiffness, slips)
 
 
-def shear_stiffness(friction: PointFriction, share: float) -> csr_array:
-    """Stiffness of the points along their faces, shape (n nv, n nv). Along its slip a point has a share of it."""
-    rates, springs = list(friction.rates), [friction.stiffness for _ in friction.rates]
+def shear_stiffness(friction: PointFriction, share: float) -> Array:
+    """Stiffness of the points along their faces, entries of the pattern. Along its slip a point has a share of it."""
+    terms: list[Springs] = [(rates, rates, friction.stiffness, slice(len(rates))) for rates in friction.rates]
     if (slipping := friction.slipping).any():
-        rates.append(friction.along(slipping))
-        springs.append((share - 1) * friction.stiffness[slipping])
-    return sprung(csr_array(vstack(rates)), np.concatenate(springs))
+        along = friction.along(slipping)
+        terms.append((along, along, (share - 1) * friction.stiffness[slipping], np.flatnonzero(slipping)))
+    return friction.pattern.sprung(*terms)
 
 
 def falling_direction(potential: Potential, search: Search, trial: Trial) -> Array | None:
@@ -456,10 +481,11 @@ def falling_direction(potential: Potential, search: Search, trial: Trial) -> Arr
     """
     presses = (trial.push > tolerance(potential, trial.pose, search)) | potential.bonded
     bent = curvature(potential, trial)
-    stiffness = sprung(trial.rates, np.where(presses, trial.springs, 0.0))
+    stiffness = normal_stiffness(potential, trial, np.where(presses, trial.springs, 0.0))
     most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
-    lowest, direction = lowest_mode(csr_array(stiffness + shear_stiffness(trial.friction, 1.0) + bent), most)
-    return direction if lowest < -NEGLIGIBLE_STIFFNESS * float(abs(stiffness).max()) else None
+    whole = stiffness + shear_stiffness(trial.friction, 1.0) + potential.pattern.taken(bent)
+    lowest, direction = lowest_mode(potential.pattern.matrix(whole), most)
+    return direction if lowest < -NEGLIGIBLE_STIFFNESS * float(np.abs(stiffness).max()) else None
 
 
 def fallen_pose(potential: Potential, trial: Trial, direction: Array) -> Array:
@@ -468,7 +494,8 @@ def fallen_pose(potential: Potential, trial: Trial, direction: Array) -> Array:
     are alike, as in a structure that is its own mirror image."""
     freedom, direction = potential.structure.places.freedom, forwards(potential, direction)
     first = PUSH * float(potential.pressed(trial.pose).max()) / np.abs(direction).max()
-    of_friction = shear_stiffness(trial.friction, 1.0) + curvature(potential, trial) - potential.curvature(trial.pose)
+    of_friction = csr_array(potential.pattern.matrix(shear_stiffness(trial.friction, 1.0)))
+    of_friction = of_friction + curvature(potential, trial) - potential.curvature(trial.pose)
     friction, stiffness = direction @ trial.friction.generalised, direction @ (of_friction @ direction)
 
     def energy(distance: float) -> float:

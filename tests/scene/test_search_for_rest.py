@@ -26,12 +26,16 @@ def sliders(scene, push, *, limited=True):
     return rest.sliders_at(scene.places, search_in(scene, limited=limited), np.array(push, dtype=float))
 
 
+def shear_stiffness(friction, share):
+    return friction.pattern.matrix(rest.shear_stiffness(friction, share)).toarray()
+
+
 def test_a_slider_holds_friction_times_push_and_only_where_faces_touch():
     scene = two_blocks()
     found = sliders(scene, [10.0, 0.0, -1.0, 1e-3])
     np.testing.assert_allclose(found.limit, [7.0, 0.0, -np.inf, 7e-4])
     np.testing.assert_allclose(found.stiffness, 1e3 * scene.contacts.k)
-    np.testing.assert_array_equal(found.shares.toarray(), np.diag([1.0, 1.0, 0.0, 1.0]))
+    np.testing.assert_array_equal(found.shared(np.eye(4)), np.diag([1.0, 1.0, 0.0, 1.0]))
     smooth = sliders(changed(scene, contacts={"friction": [0.7, 0.0, 0.7, 0.7]}), [10.0] * 4)
     np.testing.assert_allclose(smooth.limit, [7.0, -np.inf, 7.0, 7.0])
     bonds = {"area": 2e-3, "bonds": (mr.Bond(250.0, 1500.0, 1.0, 1.0), None)}
@@ -44,7 +48,7 @@ def test_without_a_limit_sliders_hold_the_mean_slip_of_the_points_of_a_joint_tha
     np.testing.assert_array_equal(found.limit, [np.inf, np.inf, -np.inf, np.inf])
     means = np.zeros((4, 4))
     means[:2, :2], means[3, 3] = 0.5, 1.0
-    np.testing.assert_allclose(found.shares.toarray(), means)
+    np.testing.assert_allclose(found.shared(np.eye(4)), means)
 
 
 @pytest.mark.parametrize(("slid", "slips"), [(1e-6, False), (1e-3, True), (-1e-3, True)])
@@ -65,7 +69,7 @@ def test_a_slider_sticks_or_has_what_the_face_holds_against_its_slip(slid, slips
     chord = np.divide(force, stretch, out=k.copy(), where=stretch != 0)
     np.testing.assert_allclose(friction.stiffness, chord, rtol=1e-9)
     np.testing.assert_allclose(friction.generalised[0], -sense * force.sum(), rtol=1e-9)
-    whole, half = rest.shear_stiffness(friction, 1.0).toarray(), rest.shear_stiffness(friction, 0.25).toarray()
+    whole, half = shear_stiffness(friction, 1.0), shear_stiffness(friction, 0.25)
     assert whole[0, 0] == pytest.approx(chord.sum())
     assert whole[3, 3] == pytest.approx(chord[2:].sum())
     assert half[0, 0] == pytest.approx((0.25 if slips else 1.0) * chord[:2].sum() + chord[2:].sum())
@@ -89,7 +93,7 @@ def test_an_exact_step_follows_the_derivatives_of_all_forces():
     for i, way in enumerate(1e-8 * np.eye(6)):
         ahead, behind = (rest.trial_at(scene.potential, search, moved(pose, s * way, freedom)).missing for s in (1, -1))
         derivatives[:, i] = (behind - ahead) / 2e-8 * size
-    found = rest.stiffness_at(scene.potential, search, trial).toarray()
+    found = scene.potential.pattern.matrix(rest.stiffness_at(scene.potential, search, trial)).toarray()
     # friction acts halfway between point and face, where slip is that of the point: 1e-4 of the arm of a block
     np.testing.assert_allclose(found, derivatives, rtol=2e-4, atol=1e-6 * np.abs(derivatives).max())
 
@@ -100,20 +104,18 @@ def test_open_sliders_hold_nothing():
     friction = rest.friction_at(scene.potential, np.array([1e-3, 0.0, 0.0, 2e-3, 0.0, 0.0]), found)
     assert not friction.drag.any()
     assert not friction.stiffness.any()
-    assert not rest.shear_stiffness(friction, 0.5).toarray().any()
+    assert not rest.shear_stiffness(friction, 0.5).any()
 
 
 def test_friction_in_space_is_softer_along_its_slip_alone():
     """k (1 - a a) + share k a a with a the way of the slip, along two ways of the face."""
-    rates = [np.array([[1.0, 0.0, 0.3]]), np.array([[0.0, 1.0, -0.2]])]
-    one = rest.csr_array
-    friction = rest.PointFriction(
-        tuple(one(rate) for rate in rates), np.array([[-3.0, 4.0]]), np.array([7.0]), np.array([True])
-    )
+    both = np.array([[1.0, 0.0, 0.3], [0.0, 1.0, -0.2]])
+    rates = np.stack([both, np.zeros((2, 3))], axis=1)[:, None]
+    pattern = rest.PairPattern(np.array([[0, -1]]), 3, 1)
+    friction = rest.PointFriction(pattern, rates, np.array([[-3.0, 4.0]]), np.array([7.0]), np.array([True]))
     way = np.array([-0.6, 0.8])
     matrix = 7.0 * (np.eye(2) - 0.75 * np.outer(way, way))
-    both = np.vstack(rates)
-    np.testing.assert_allclose(rest.shear_stiffness(friction, 0.25).toarray(), both.T @ matrix @ both, rtol=1e-12)
+    np.testing.assert_allclose(shear_stiffness(friction, 0.25), both.T @ matrix @ both, rtol=1e-12)
     np.testing.assert_allclose(friction.generalised, both.T @ [-3.0, 4.0])
 
 
@@ -190,7 +192,7 @@ def test_bodies_fall_along_the_way_that_takes_the_most_energy():
     fallen = rest.fallen_pose(scene.potential, trial, way)
     far = (fallen - pose)[2] / way[2]
     np.testing.assert_allclose(fallen[[2, 5]], pose[[2, 5]] + far * way[[2, 5]], rtol=1e-9)
-    drag, stiffness = way @ friction.generalised, way @ rest.shear_stiffness(friction, 1.0) @ way
+    drag, stiffness = way @ friction.generalised, way @ shear_stiffness(friction, 1.0) @ way
 
     def energy(part):
         of_friction = -part * far * drag + 0.5 * (part * far) ** 2 * stiffness

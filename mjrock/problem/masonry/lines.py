@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array, eye_array, vstack
+from scipy.sparse import csr_array, vstack
 
 from ...geometry.convex import exact_shares, sectioned, spread, within
 from ...linear import averaged, block_diagonal, entries, lowest_square, rates_of, sprung
@@ -170,12 +170,15 @@ def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -
 def rates(blocks: Sequence[AnyBlock], lines: Lines, directions: Array) -> csr_array:
     """Rates at which the lines move apart in given directions, see `mjrock.linear.rates_of`.
 
-    Directions have the shape (m, 2), in space (m, 3). Along the normals the rates are those of the gaps. The
-    bodies are the blocks that are not fixed, in order.
+    Directions have the shape (m, 2), in space (m, 3), or (n, m, d) for n directions of each, the rows of the first
+    before the second. Along the normals the rates are those of the gaps. The bodies are the blocks that are not fixed,
+    in order.
     """
     centroids, number = np.array([block.centroid for block in blocks]), free_numbers(blocks)
-    arms = lines.at - centroids[lines.body], lines.at - centroids[lines.face]
-    return rates_of(number[np.column_stack([lines.body, lines.face])], arms, directions, int(number.max()) + 1)
+    times = (len(directions) if directions.ndim == 3 else 1, 1)
+    pair = np.tile(number[np.column_stack([lines.body, lines.face])], times)
+    arms = np.tile(lines.at - centroids[lines.body], times), np.tile(lines.at - centroids[lines.face], times)
+    return rates_of(pair, arms, directions.reshape(len(pair), -1), int(number.max()) + 1)
 
 
 def free_numbers(blocks: Sequence[AnyBlock]) -> Integers:
@@ -190,7 +193,9 @@ def mean_slip_rates(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> cs
     In space a joint has three: along the two directions of `Lines.tangents`, and the rate at which it twists about its
     normal [rad/s]. The shape is (3 joints, 6 bodies), the first of all joints before the second.
     """
-    parts = [averaged(rates(blocks, lines, direction), lines.joint, joints) for direction in lines.tangents]
+    directions = np.array(lines.tangents)
+    group = np.add.outer(joints * np.arange(len(directions)), lines.joint).ravel()
+    parts = [averaged(rates(blocks, lines, directions), group, joints * len(directions))]
     if lines.normal.shape[1] == 3:
         number = free_numbers(blocks)
         spins = lines.normal[:, None] * np.array([[1.0], [-1.0]])
@@ -212,16 +217,19 @@ def lowest_frequency(
     their faces by their springs `along` [N/m], shape (m,), and slide where these are infinite.
     """
     masses, axes = masses_of(blocks)
-    axes = csr_array(eye_array(len(masses))) if axes is None else axes
-    moves = rates(blocks, lines, lines.normal), mean_slip_rates(blocks, lines, len(friction))
-    opening, sliding = (csr_array(part @ axes) for part in moves)
+
+    def about_axes(moves: csr_array) -> csr_array:
+        return moves if axes is None else csr_array(moves @ axes)
+
+    opening = about_axes(rates(blocks, lines, lines.normal))
+    sliding = about_axes(mean_slip_rates(blocks, lines, len(friction)))
     sticking = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
     grip, stiffness = sliding[np.tile(sticking, sliding.shape[0] // len(sticking))], sprung(opening, lines.k)
     square = lowest_square(stiffness, masses, grip, UNRESISTED)
     if square == 0:
         springs = np.where(np.isfinite(along) & (friction > 0)[lines.joint], along, 0.0)
         for tangent in lines.tangents:
-            stiffness = stiffness + sprung(csr_array(rates(blocks, lines, tangent) @ axes), springs)
+            stiffness = stiffness + sprung(about_axes(rates(blocks, lines, tangent)), springs)
         square = lowest_square(stiffness, masses, grip[:0], UNRESISTED)
     return math.sqrt(square)
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from scipy.sparse import csc_array, csr_array, diags_array, eye_array, hstack, vstack
+from scipy.sparse import csc_array, csr_array, eye_array, hstack, vstack
 
 from ....bars import waited
 from ....geometry.graph import connected_parts
@@ -177,9 +177,15 @@ def cones(masonry: Masonry, friction: Array, tangents: tuple[Array, ...] | None 
     lines = masonry.lines
     law = masonry.table.laws(lines.joint, friction=friction[lines.joint])
     limit = np.asarray(shear_limit(law, 1.0))[:, None]  # along the face, of a unit pressure
-    edges = lines.normal + limit * cone_edges(tangents or lines.tangents)
-    rows = [rates(masonry.blocks, lines, edge) for edge in edges]
-    return csc_array(diags_array(1 / sizes_of(masonry)) @ vstack(rows).T)
+    return unit_forces(masonry, lines.normal + limit * cone_edges(tangents or lines.tangents))
+
+
+def unit_forces(masonry: Masonry, directions: Array) -> csc_array:
+    """Generalised forces of unit forces along n directions at each line, of shape (n, m, d), moments over the size of
+    the block, shape (unknowns, n m)."""
+    rows = rates(masonry.blocks, masonry.lines, directions)
+    values = (1 / sizes_of(masonry))[rows.indices] * rows.data
+    return csc_array((values, rows.indices, rows.indptr), shape=rows.shape[::-1])
 
 
 class BondForces(NamedTuple):
@@ -214,9 +220,8 @@ def bond_forces(masonry: Masonry, tangents: tuple[Array, ...] | None = None) -> 
         )
     area = masonry.areas_of(lines.k, lines.joint)
     pull, along = (area * strengths(masonry.bonds, name)[lines.joint] for name in ("tension", "cohesion"))
-    columns = vstack([rates(masonry.blocks, lines, direction) for direction in directions]).T
     limits = np.concatenate([pull, *[along] * (2 * len(tangents))])
-    return BondForces(csc_array(diags_array(1 / sizes_of(masonry)) @ columns), limits, directions)
+    return BondForces(unit_forces(masonry, directions), limits, directions)
 
 
 def cone_edges(tangents: tuple[Array, ...]) -> Array:
