@@ -7,6 +7,7 @@ They are taken with every contact closed, and need not belong to one mode. The f
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import scipy
@@ -29,10 +30,11 @@ wall in space has six times as many springs as unknowns."""
 def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
     lines, bodies = stiffest_lines(system), len(system.bodies)
-    rates = [line_rates(lines, direction, bodies) for direction in directions_of(np.asarray(lines["normal"]))]
+    rates = [line_rates(lines, directions_of(np.asarray(lines["normal"])), bodies)]
     links = [table for table in system.links if any(of.any() for of in table.springs())]
     rates += [table.rates(system.bodies) for table in links]
-    lengths, root = csr_array(vstack(rates)), root_of_masses(system)
+    lengths = rates[0] if not links else csr_array(vstack(rates))
+    root = root_of_masses(system)
 
     def weights(i: int) -> Array:
         normal, shear = ((largest_stiffness(lines), lines["k_s"]), (lines["c"], lines["c_s"]))[i]
@@ -97,7 +99,10 @@ def directions_of(normal: Array) -> tuple[Array, ...]:
     return normal, *np.moveaxis(tangent_axes(normal), 1, 0)
 
 
-def line_rates(lines: Rows, directions: Array, bodies: int) -> csr_array:
-    """Rates at which the points of lines move over their faces in directions, for unit velocities at rest."""
-    arms = np.asarray(lines["at"]), np.asarray(lines["origin"])
-    return rates_of(np.column_stack([lines["body"], lines["face"]]), arms, directions, bodies)
+def line_rates(lines: Rows, directions: Sequence[Array], bodies: int) -> csr_array:
+    """Rates at which the points of lines move over their faces in directions of each, one after the other, for unit
+    velocities at rest."""
+    times = len(directions), 1
+    arms = np.tile(lines["at"], times), np.tile(lines["origin"], times)
+    pair = np.tile(np.column_stack([lines["body"], lines["face"]]), times)
+    return rates_of(pair, arms, np.concatenate(directions), bodies)

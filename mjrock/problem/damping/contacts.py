@@ -56,6 +56,11 @@ def contact_lines(face: float, points: PointCount) -> tuple[Array, Array]:
     The lines are evenly spaced from edge to edge, so that the outer two have half the tributary width of the others.
     Two lines are the corners with half the face each. Many lines approach a uniform bed.
     """
+    return even_lines(face, points)
+
+
+def even_lines(face: float, points: int) -> tuple[Array, Array]:
+    """The same for a number of points that is known to be valid."""
     positions = np.linspace(-face / 2, face / 2, points)
     widths = np.full(points, face / (points - 1))
     widths[[0, -1]] /= 2

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, vstack
 from ...geometry.convex import exact_shares, sectioned, spread, within
 from ...linear import averaged, block_diagonal, entries, lowest_square, rates_of, sprung
 from ...quantities import Array, Flags, Integers
-from ..damping.contacts import contact_lines
+from ..damping.contacts import even_lines
 from .blocks.compound import AnyBlock
 from .blocks.joints import LEVEL, Joint
 from .blocks.joints_in_space import SpaceJoint, tangent_axes
@@ -147,7 +147,7 @@ def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[Spo
 
     The outer two have half the tributary width, or in a joint that is `exact` less, see `exact_shares`.
     """
-    places, widths = contact_lines(joint.width, points)
+    places, widths = even_lines(joint.width, points)
     widths = joint.width * exact_shares(points) if exact else widths
     for i, (place, width) in enumerate(zip(places, widths.tolist(), strict=True)):
         overhangs = (i == 0 and not joint.corners[0]) or (i == points - 1 and not joint.corners[1])
