@@ -299,11 +299,11 @@ EQUIVALENT = {
     **{
         f"finder.py: {line}": "the two ends of a prism are alike, and no place is between them"
         for line in (
-            "kept = found.only(found.place[:, 1] < 0.5 * self._half)",
-            "kept = found.only(found.place[:, 1] > 0.25 * self._half)",
+            'at_end = table["at"][order, 1] < 0.5 * self._half',
+            'at_end = table["at"][order, 1] > 0.25 * self._half',
         )
     },
-    "finder.py: normal = kept.normal[:, ::2] * np.hypot(*kept.normal[:, ::2].T)[:, None]": (
+    "finder.py: normal = normal * np.hypot(normal[:, 0], normal[:, 1])[:, None]": (
         "sides of prisms have normals in the plane, of unit length but for rounding"
     ),
     "finder.py: share = found.share * np.where(over, found.area / np.where(over, in_pair, 2.0), 1.0)": (

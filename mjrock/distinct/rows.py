@@ -62,7 +62,7 @@ def kinds(d: int) -> Kinds:
         [*numbers("friction", "ground", *DISSIPATED_BY_LAWS), *vectors(d, "push")],
         [*integers("body"), *vectors(d, "force"), *vectors(s, "moment")],
     )
-    return Kinds(*(np.dtype(kind) for kind in fields))
+    return Kinds(*(np.dtype((np.record, kind)) for kind in fields))
 
 
 def numbers(*names: str) -> Fields:
@@ -154,22 +154,22 @@ def _tangent(d: int, s: int) -> Fields:
 
 
 def rows(kind: np.dtype[np.void], count: int, **columns: Array | Integers | float) -> Rows:
-    """Rows with these columns, and zeros in the others."""
-    table = np.zeros(count, dtype=kind)
+    """Rows with these columns, and zeros in the others. Their numbers are attributes, and columns are plain arrays."""
+    table = np.zeros(count, dtype=kind if kind.type is np.record else np.dtype((np.record, kind)))
     for name, values in columns.items():
         table[name] = values
-    return table.view(np.recarray)
+    return table
 
 
 def joined(*tables: Rows) -> Rows:
     """Rows of one kind, one table after the other. numpy joins bytes faster than columns."""
     joint = np.concatenate([as_bytes(table) for table in tables])
-    return joint.reshape(-1).view(tables[0].dtype).view(np.recarray)
+    return joint.reshape(-1).view(tables[0].dtype)
 
 
 def chosen(table: Rows, which: Integers | Flags) -> Rows:
     """Some of the rows. numpy takes bytes faster than columns."""
-    return as_bytes(table)[which].reshape(-1).view(table.dtype).view(np.recarray)
+    return as_bytes(table)[which].reshape(-1).view(table.dtype)
 
 
 MAY_BE_INFINITE = ("k_s", "margin")

@@ -61,8 +61,9 @@ def root_of_masses(system: System) -> csr_array:
 
 
 def stiffest_lines(system: System) -> Rows:
-    """The lines with the largest springs and dashpots that they may have with the laws of their joints."""
-    lines = system.lines.copy()
+    """The lines with the largest springs and dashpots that they may have with the laws of their joints, with columns as
+    attributes, as the law of a joint reads them."""
+    lines = system.lines.copy().view(np.recarray)
     for law in system.laws:
         for name, most in law.springs().items():
             lines[name][: len(most)] = np.maximum(lines[name][: len(most)], most)

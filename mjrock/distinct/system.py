@@ -11,7 +11,7 @@ from ..quantities import Array, Integers
 from ..scene.course import Ground
 from .rows import DISSIPATED_BY_LAWS, Rows, joined, kinds, rows
 from .supports import Supports
-from .thread import Thread, threads_of
+from .thread import Thread, put_apart, spans_of, spans_of_bodies, threads_of
 
 Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
@@ -83,23 +83,24 @@ class Books(NamedTuple):
 
     def with_room(self, system: System) -> Books:
         """The books with room for the lines of a system, whose forces wait for no other thread."""
-        return self.of_threads(system, 1)[0]
-
-    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Thread, ...]]:
-        """The books with room for the lines of a system, and a number of threads for them."""
-        (threads, apart), lines = threads_of(system.bodies, system.lines, count), len(system.lines)
-        books, spans = self._replace(apart=apart), len(threads[0].lines) - 1
+        lines, spans = len(system.lines), spans_of(system.lines)
+        books = self._replace(apart=put_apart(system.bodies, system.lines, spans[[0, -1]]))
         if lines > len(self.active):
             active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
             books = books._replace(active=active, touched=touched, impulse=np.zeros(lines), remaining=np.zeros(lines))
-        more = max(spans, len(threads[0].bodies) - 1) - len(self.totals)
+        more = max(len(spans), len(spans_of_bodies(system.bodies))) - 1 - len(self.totals)
         if more > 0:
             books = books._replace(totals=joined(self.totals, rows(self.totals.dtype, more)))
-        if spans + len(self.dashpots) > len(self.encounters):
-            encounters = np.zeros(spans + len(self.dashpots))
+        if (accounts := len(spans) - 1 + len(self.dashpots)) > len(self.encounters):
+            encounters = np.zeros(accounts)
             encounters[: len(self.encounters)] = self.encounters
             books = books._replace(encounters=encounters)
-        return books, threads
+        return books
+
+    def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Thread, ...]]:
+        """The books with room for the lines of a system, and a number of threads for them."""
+        books, (threads, apart) = self.with_room(system), threads_of(system.bodies, system.lines, count)
+        return books._replace(apart=apart), threads
 
     @property
     def size(self) -> int:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import ctypes
 import sys
 from functools import cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -60,15 +61,13 @@ class Thread(NamedTuple):
 
 def threads_of(bodies: Rows, lines: Rows, count: int) -> tuple[tuple[Thread, ...], Rows]:
     """A number of threads for these bodies and lines, and room for the forces that wait, see `put_apart`."""
-    spans, of_bodies = spans_of(lines), np.append(np.arange(0, len(bodies), BODIES_TOGETHER), len(bodies))
-    parts, parts_of_bodies = (np.arange(count + 1) * (len(each) - 1) // count for each in (spans, of_bodies))
+    spans, of_bodies = spans_of(lines), spans_of_bodies(bodies)
+    parts, parts_of_bodies = ([i * (len(each) - 1) // count for i in range(count + 1)] for each in (spans, of_bodies))
     apart = put_apart(bodies, lines, spans[parts])
-    first = 1 + np.searchsorted(apart["body"][1:], of_bodies[parts_of_bodies])
+    first = (1 + apart["body"][1:].searchsorted(of_bodies[parts_of_bodies])).tolist()
     touched, gate = np.zeros(count, dtype=np.int64), np.zeros(GATE_END + 1, dtype=np.int64)
     shared = spans[parts[:-1]], touched, gate, yielding()
-    own_lines, own_bodies, own_apart = (
-        [(int(each[i]), int(each[i + 1])) for i in range(count)] for each in (parts, parts_of_bodies, first)
-    )
+    own_lines, own_bodies, own_apart = (list(pairwise(each)) for each in (parts, parts_of_bodies, first))
     threads = [
         Thread(i, count, spans, of_bodies, own_lines[i], own_bodies[i], own_apart[i], *shared) for i in range(count)
     ]
@@ -78,10 +77,16 @@ def threads_of(bodies: Rows, lines: Rows, count: int) -> tuple[tuple[Thread, ...
 def spans_of(lines: Rows) -> Integers:
     """Where each span of lines begins, and where the last one ends. Lines of one joint are not parted, so that no two
     threads book on one account. Those that a search has found follow them, with an account for each span."""
-    count, joints = len(lines), int(np.count_nonzero(lines["sense"]))
-    starts = np.append(np.flatnonzero(np.diff(lines["group"][:joints], prepend=-1)), joints)
-    cuts = starts[np.searchsorted(starts, np.arange(0, joints, LINES_TOGETHER))]
-    return np.unique(np.concatenate([[0], cuts, np.arange(joints, count, LINES_TOGETHER), [count]]))
+    count, joints, cuts = len(lines), int(np.count_nonzero(lines["sense"])), [0]
+    if joints > LINES_TOGETHER:
+        starts = np.append(np.flatnonzero(np.diff(lines["group"][:joints], prepend=-1)), joints)
+        cuts = starts[np.searchsorted(starts, np.arange(0, joints, LINES_TOGETHER))].tolist()
+    return np.array(sorted({*cuts, *range(joints, count, LINES_TOGETHER), count}))
+
+
+def spans_of_bodies(bodies: Rows) -> Integers:
+    """Where each span of bodies begins, and where the last one ends."""
+    return np.array([*range(0, len(bodies), BODIES_TOGETHER), len(bodies)])
 
 
 def put_apart(bodies: Rows, lines: Rows, parts: Integers) -> Rows:

@@ -156,7 +156,7 @@ class Writer:
 
     def _of_array(self, value: NDArray[np.generic], path: str, of: type, field: str) -> Tree:
         """The tree of an array: its numbers, or its name among those that are kept beside the tree."""
-        layout: dict[str, Tree] = {"rows": True} if isinstance(value, np.recarray) else {}
+        layout: dict[str, Tree] = {"rows": True} if value.dtype.type is np.record else {}
         layout |= {"fixed": True} if not value.flags.writeable else {}
         layout |= {"order": "F"} if value.flags.fnc else {}
         plain = value.dtype.names is None and value.size <= INLINE and not self._has_place(value)

@@ -187,7 +187,7 @@ class ContactSearch:
             may_touch = np.empty(len(found.gap), dtype=bool)
             set_validity(found, motion, self.sizes, validity, may_touch, self.limits.interval)
             may_touch &= found.share > 0
-            of_gone = np.append(joints.left[joints.pairs], ~kept)
+            of_gone = np.concatenate([joints.left[joints.pairs], ~kept])
             if may_touch.any() or of_gone.any():
                 system = self._with_new_lines(system, books, motion.poses, found.only(may_touch), of_gone, h)
                 books = books.with_room(system)
@@ -198,8 +198,9 @@ class ContactSearch:
     def _surges(self, system: System, t: float, until: float) -> Array:
         """By how much the velocity of what is driven, a fixed block or one at a link, changes until a time [m/s], shape
         (blocks,)."""
-        found, moves = np.zeros(self.count), np.flatnonzero(self.blocks.support >= 0)
-        if len(moves):
+        found = np.zeros(self.count)
+        if len(system.supports.moved):
+            moves = np.flatnonzero(self.blocks.support >= 0)
             found[moves] = velocity_changes(system.supports, t, until)[self.blocks.support[moves]]
         for table in system.links:
             if len(table.rows):
@@ -219,24 +220,27 @@ class ContactSearch:
             of_gone: lines of joints that are handed over, and found ones whose blocks have moved, shape (lines,).
             h: length of a step [s].
         """
-        state, count, lines = self.state, len(self.joints.pairs), np.asarray(system.lines)
+        state, count, lines = self.state, len(self.joints.pairs), system.lines
         joints, others, number = lines[:count], lines[count:], self._numbers(found)
-        left_joints, kept = of_gone[:count], ~of_gone[count:]
-        for law in system.laws:
+        left_joints, kept, size = of_gone[:count], ~of_gone[count:], len(number)
+        bonded = [law for law in system.laws if len(law.rows)]
+        for law in bonded:
             law.release(joints[: len(law.rows)], left_joints[: len(law.rows)])
-        pair, which = np.append(self.law.jointed[self.joints.pairs], state.pair), np.flatnonzero(of_gone)
-        which = which[np.argsort(pair[which], kind="stable")]
-        slack, size = np.append(np.zeros(count), state.slack), len(number)
-        gone = Lines.unwritten(chosen(lines, which), slack[which])
+        pair, which = np.concatenate([self.law.jointed[self.joints.pairs], state.pair]), of_gone.nonzero()[0]
+        which = which[pair[which].argsort(kind="stable")]
+        slack, share = (
+            np.concatenate([np.full(count, of_joints), found_ones])[which]
+            for of_joints, found_ones in ((0.0, state.slack), (1.0, state.share))
+        )
+        gone = Lines.unwritten(chosen(lines, which), slack)
         new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
         before = account(system, which, gone.depth)
-        share = np.append(np.ones(count), state.share)[which]
         soft = (share < 1) & (gone.depth > 0)
         share = least_among(number, pair[which][soft], share[soft])
         law = self.law.of_places(number, found.share, found.area, self.count)
         for name, column in law.items():
             new.rows[name] = column
-        own = [(each, each.beyond(self._joints_of(number), new.rows)) for each in system.laws]
+        own = [(each, each.beyond(self._joints_of(number), new.rows)) for each in bonded]
         springs = law
         for each, added in own:
             springs = each.stiffest(added, springs)
@@ -251,7 +255,7 @@ class ContactSearch:
         hand_over(new, found, gone, pairs, blocks)
         for each, added in own:
             each.bend(added, new.rows, new.depth)
-        for place in unsound(np.asarray(new.rows))[:1]:
+        for place in unsound(new.rows)[:1]:
             one, other = (self.names[int(block[place])] for block in (found.face, found.other))
             raise ArithmeticError(f"the contact of {one} and {other}")
         if left_joints.any():
@@ -259,8 +263,9 @@ class ContactSearch:
                 joints[name][left_joints] = 0.0
             joints["margin"][left_joints] = np.inf  # no step takes such a line again
         self._keep(kept, found, number, new.slack, share)
-        lines = joined(joints, chosen(others, kept), np.asarray(new.rows))
-        laws = tuple(each.with_search_lines(count, kept, added) for each, added in own)
+        lines = joined(joints, chosen(others, kept), new.rows)
+        grown = {type(each): each.with_search_lines(count, kept, added) for each, added in own}
+        laws = tuple(grown.get(type(law), law) for law in system.laws)
         system = system._replace(lines=lines, laws=laws).with_room_for_friction()
         after = account(system, np.arange(len(lines) - size, len(lines)), new.depth)
         self._book(books, before, after, 0.5 * h if state.since > 0 else 0.0)
@@ -274,22 +279,20 @@ class ContactSearch:
             found, number: places of the new lines, and numbers of their pairs.
             slack, share: overlap of the new lines without force [m], and their stiffness over that of their law [-].
         """
-        state, pressing = self.state, found.gap < 0
-        state.pair, state.slack = np.append(state.pair[kept], number), np.append(state.slack[kept], slack)
-        state.share = np.append(state.share[kept], share)
-        state.found = np.append(state.found[kept], self._searches_of(number))
-        for block in (found.face[pressing], found.other[pressing]):
-            np.minimum.at(state.least_share, block, share[pressing])
+        state, pressing = self.state, (found.gap < 0) & (share < 1)
+        new = {"pair": number, "slack": slack, "share": share, "found": self._searches_of(number)}
+        for name, column in new.items():
+            setattr(state, name, np.concatenate([getattr(state, name)[kept], column]))
+        for block in (found.face, found.other) if pressing.any() else ():
+            np.minimum.at(state.least_share, block[pressing], share[pressing])
 
     def _book(self, books: Books, before: Account, after: Account, half: float) -> None:
         """Book what a search changes, whose forces change half a step before the pose [s]."""
-        shear_change = min(
-            before.sheared - after.sheared, 0.0
-        )  # friction takes what shear springs lose, and gives nothing
-        late = half * (after.power - before.power)
-        books.totals[0].encounter_ends += before.energy + shear_change - after.energy - late
-        books.totals[0].ground += half * (before.carried - after.carried)
-        books.totals[0].friction += half * (before.rubbed - after.rubbed) - shear_change
+        shear_change = min(before.sheared - after.sheared, 0.0)  # what they lose is friction
+        late, totals = half * (after.power - before.power), books.totals
+        totals["encounter_ends"][0] += before.energy + shear_change - after.energy - late
+        totals["ground"][0] += half * (before.carried - after.carried)
+        totals["friction"][0] += half * (before.rubbed - after.rubbed) - shear_change
         books.dashpots[self.group] += half * (before.damped - after.damped) + float(books.encounters.sum())
         books.encounters[:] = 0.0
 
@@ -300,7 +303,8 @@ class ContactSearch:
 
     def _searches_of(self, pair: Integers) -> Integers:
         """How often both blocks of pairs have been searched."""
-        return np.asarray(self.state.validity.searches[np.array(np.divmod(pair, self.count))].sum(axis=0))
+        searches = self.state.validity.searches
+        return np.asarray(searches[pair // self.count] + searches[pair % self.count])
 
     def _stable(self, found: ContactPlaces, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
         """Share of their law that leaves places stable in a step of h [s], shape (n,)."""

@@ -121,13 +121,14 @@ class Finder:
         self.jointed = self.points = NONE
         self._half = min(solid.size for solid in solids)  # of the length of a prism, which plays no part
         self.number = np.array([len(solid.drawn) for solid in solids])
+        self._of_parts = bool(self.number.max() > 1)
         self.first = np.cumsum(self.number) - self.number
         self.owner = np.repeat(np.arange(len(solids)), self.number)
         fixed, centroids = np.array([solid.fixed for solid in solids]), np.array([solid.rest for solid in solids])
         self._fixed = fixed[self.owner]
         parts = parts_of(solids, self._half, flat=flat)
         self.volumes = np.add.reduceat([part.bulk.volume for part in parts], self.first)
-        self._rank = ranked(fixed, self.volumes, centroids[:, -1], self._half)
+        self._rank = ranked(fixed, self.volumes, centroids[:, -1], self._half)[self.owner]
         inside = [flags for solid in solids for flags in solid.inside]
         self.solids = Solids.about(parts, centroids[self.owner], inside, self.owner, sides_of(solids), flat=flat)
         most = int(np.diff([*self.solids.first, *self.solids.begin]).max())
@@ -151,17 +152,17 @@ class Finder:
         solids, reach, searched = self.posed(poses), reach[self.owner], searched[self.owner]
         low, high = (ends.reduceat(solids.corners, solids.corner[:-1]) for ends in (np.minimum, np.maximum))
         low, high = low - reach[:, None], high + reach[:, None]
-        axis = int(np.ptp(low, axis=0).argmax())
-        order, cells = np.argsort(low[:, axis]), self.points - 1
-        pairs = skipped, self.jointed, np.column_stack([cells, np.ones_like(cells) if self.flat else cells])
-        near = Near(low, high, order, axis, reach, searched, self._fixed, self._rank[self.owner], *pairs)
+        axis = int((low.max(axis=0) - low.min(axis=0)).argmax())
+        order, cells = low[:, axis].argsort(), np.ones((len(self.points), 2), dtype=np.int64)
+        cells[:, : 1 if self.flat else 2] = self.points[:, None] - 1
+        near = Near(low, high, order, axis, reach, searched, self._fixed, self._rank, skipped, self.jointed, cells)
         while (count := find(solids, near, self._work)) > len(self._work.places):
             self._work = self._work._replace(places=rows(PLACE, 2 * count))
-        table, of_parts = self._work.places[:count].view(np.ndarray), self.number.max() > 1  # faster than records
-        table = self._once(table) if of_parts else table
-        found = self._in_order(ContactPlaces(*(table[name].copy() for name in (PLACE.names or ())[:-1])))
+        table = self._once(self._work.places[:count]) if self._of_parts else self._work.places[:count]
+        order = self._order_of(table)
+        found = ContactPlaces(*(table[name][order] for name in (PLACE.names or ())[:-1]))
         found = self._of_the_plane(found) if self.flat else found
-        return self._among_blocks(found) if of_parts else found
+        return self._among_blocks(found) if self._of_parts else found
 
     def _once(self, table: Rows) -> Rows:
         """The places without repetitions: several pairs of parts of two blocks find those of a common side."""
@@ -172,16 +173,18 @@ class Finder:
         once: Rows = table[(sides < 0) | (pair == first[of])]
         return once
 
-    def _in_order(self, found: ContactPlaces) -> ContactPlaces:
-        """Places in an order of their pairs that neither the numbers of blocks nor the axes change, where blocks differ
-        in rank, those of a pair together."""
-        rank = self._rank[self.owner]
-        of_blocks = pair_number(rank[found.face], rank[found.other], len(self.number))
-        return found.only(np.lexsort((pair_number(found.face, found.other, len(self.owner)), of_blocks)))
+    def _order_of(self, table: Rows) -> Integers:
+        """An order of the places, in the plane of those at one end of the prisms, that neither the numbers of blocks
+        nor the axes change, where blocks differ in rank. Those of a pair are together."""
+        face, other = table["face"], table["other"]
+        of_blocks = pair_number(self._rank[face], self._rank[other], len(self.number))
+        order = np.lexsort((pair_number(face, other, len(self.owner)), of_blocks))
+        at_end = table["at"][order, 1] > 0.5 * self._half
+        return order[at_end] if self.flat else order
 
     def between(self, a: Integers, b: Integers) -> Integers:
         """Numbers of the pairs of solids of pairs of blocks, shape (n,)."""
-        if self.number.max() > 1:
+        if self._of_parts:
             _, a, b = each_with_each(self.first, self.number, np.column_stack([a, b]))
         return pair_number(a, b, len(self.owner))
 
@@ -191,10 +194,9 @@ class Finder:
 
     def posed(self, poses: Poses) -> Solids:
         """The solids at some poses."""
-        place, change = poses.drawn + poses.moved, poses.change
-        if self.flat:
-            place, change = np.insert(place, 1, 0.0, axis=1), np.zeros((len(place), 3, 3))
-            change[:, ::2, ::2] = poses.change
+        place, change = np.zeros((len(poses.moved), 3)), np.zeros((len(poses.moved), 3, 3))
+        axes = slice(None, None, 2 if self.flat else 1)
+        place[:, axes], change[:, axes, axes] = poses.drawn + poses.moved, poses.change
         return self.solids.moved(place[self.owner], change[self.owner])
 
     def _among_blocks(self, found: ContactPlaces) -> ContactPlaces:
@@ -212,12 +214,10 @@ class Finder:
         return found._replace(share=share, area=area)
 
     def _of_the_plane(self, found: ContactPlaces) -> ContactPlaces:
-        """The places at one end of the prisms."""
-        kept = found.only(found.place[:, 1] > 0.5 * self._half)
-        normal = kept.normal[:, ::2] / np.hypot(*kept.normal[:, ::2].T)[:, None]
-        return kept._replace(
-            place=kept.place[:, ::2], normal=normal, share=2 * kept.share, area=kept.area / (2 * self._half)
-        )
+        """The places at one end of the prisms as those of the plane."""
+        normal, share, area = found.normal[:, ::2], 2 * found.share, found.area / (2 * self._half)
+        normal = normal / np.hypot(normal[:, 0], normal[:, 1])[:, None]
+        return found._replace(place=found.place[:, ::2], normal=normal, share=share, area=area)
 
 
 def ranked(fixed: Flags, volumes: Array, heights: Array, size: float) -> Integers:

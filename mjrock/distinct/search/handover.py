@@ -89,9 +89,10 @@ class Pairs(NamedTuple):
     @classmethod
     def belonging(cls, places: Integers, gone: Integers) -> Pairs:
         """From the number of the pair of each place, those of a pair together, and of each old line, increasing."""
-        first = np.concatenate([[0], np.flatnonzero(np.diff(places)) + 1, [len(places)]])
+        begins = (places[1:] != places[:-1]).nonzero()[0] + 1
+        first = np.array([0, *begins.tolist(), len(places)])
         pairs = places[first[:-1]] if len(places) else places
-        return cls(first, *(np.searchsorted(gone, pairs, side) for side in ("left", "right")))
+        return cls(first, gone.searchsorted(pairs), gone.searchsorted(pairs, "right"))
 
 
 @inlined

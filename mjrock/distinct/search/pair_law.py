@@ -23,7 +23,7 @@ dashpots that it has on one of its sides, twice over, as a block between two oth
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,7 +55,7 @@ def are_among(numbers: Integers, increasing: Integers) -> Flags:
     """Whether numbers are among increasing ones, shape of the numbers."""
     if not len(increasing):
         return np.zeros(len(numbers), dtype=bool)
-    place = np.minimum(np.searchsorted(increasing, numbers), len(increasing) - 1)
+    place = np.minimum(increasing.searchsorted(numbers), len(increasing) - 1)
     return np.asarray(increasing[place] == numbers)
 
 
@@ -79,6 +79,7 @@ class PairLaw(NamedTuple):
         of_block: likewise of each block as a pair without a joint takes it.
         fixed, loose: which blocks are fixed, and which have no joint, shape (blocks,).
         given: friction and dashpot over spring of pairs without a joint that have been requested.
+        known: what pairs have that have a joint or have met.
     """
 
     jointed: Integers
@@ -87,6 +88,7 @@ class PairLaw(NamedTuple):
     fixed: Flags
     loose: Flags
     given: GivenPairs
+    known: PairsMet
 
     @classmethod
     def of_joints(cls, scene: Scene, lines: Rows) -> PairLaw:
@@ -109,7 +111,8 @@ class PairLaw(NamedTuple):
         loose = shared[:, 0] == 0
         shared[loose], rough[loose] = _of_loose(scene, sums, others, loose)
         fixed = np.array([solid.fixed for solid in solids])
-        return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose, GivenPairs(springs, blocks))
+        known = PairsMet(KnownPairs(jointed, in_pairs, least, np.ones(len(jointed), dtype=bool)))
+        return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose, GivenPairs(springs, blocks), known)
 
     @property
     def slowest(self) -> float:
@@ -141,19 +144,21 @@ class PairLaw(NamedTuple):
     def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
         """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
         face that lies over the other [m2], zero for edges, shape (n,) each."""
-        had, loose = are_among(pair, self.jointed), np.zeros(len(pair), dtype=bool)
-        there, alone = np.minimum(np.searchsorted(self.jointed, pair), len(self.jointed) - 1), ~had
-        shared, others = self.of_pair[0][there], self.of_pair[1][there]
-        if alone.any():
-            ends = np.array(np.divmod(pair[alone], blocks))
-            shared[alone], loose[alone] = self._of_softer(ends)
-            others[alone] = self.of_block[1][ends].min(axis=0)
-            self.given.take(pair, shared, others[:, OF_FRICTION], alone)
+        known = self.known.with_pairs(pair, lambda new: self._alone(new, blocks))
+        there = known.numbers.searchsorted(pair)
+        shared, others = known.shared[there], known.others[there]
         over = area / shared[:, -1]
-        part = np.where(had | loose, part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
+        part = np.where(known.of_face[there], part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)
         columns = dict(zip(SHARED_COLUMNS, share * shared[:, :-1].T, strict=True))
         return columns | dict(zip(INTENSIVE, others.T, strict=True))
+
+    def _alone(self, pair: Integers, blocks: int) -> KnownPairs:
+        """What pairs without a joint have, by their increasing numbers."""
+        ends = np.array(np.divmod(pair, blocks))
+        (shared, loose), others = self._of_softer(ends), self.of_block[1][ends].min(axis=0)
+        self.given.take(pair, shared, others[:, OF_FRICTION])
+        return KnownPairs(pair, shared, others, loose)
 
     def _of_softer(self, ends: Integers) -> tuple[Array, Flags]:
         """What pairs without a joint have, shape (n, 5), and whether the block that rules is loose, shape (n,), from
@@ -169,6 +174,38 @@ class PairLaw(NamedTuple):
         alike = ~fixed.any(axis=0) & ~(less | more).any(axis=1)
         rules |= alike & self.loose[ends].any(axis=0)  # the loose one of two
         return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
+
+
+class KnownPairs(NamedTuple):
+    """What some pairs have.
+
+    Args:
+        numbers: of the pairs, increasing, shape (p,).
+        shared, others: see `PairLaw.of_pair`.
+        of_face: whether each has less over a part of its joint or of a face, see `part_of_face`, shape (p,).
+    """
+
+    numbers: Integers
+    shared: Array
+    others: Array
+    of_face: Flags
+
+
+class PairsMet:
+    """Pairs with a joint, and those that have met, whose law is computed once. Runs in two threads may share it."""
+
+    def __init__(self, known: KnownPairs) -> None:
+        self._known = known
+
+    def with_pairs(self, pair: Integers, law: Callable[[Integers], KnownPairs]) -> KnownPairs:
+        """All known pairs, these among them. The law of pairs that have not met, by their increasing numbers."""
+        known = self._known
+        new = pair[~are_among(pair, known.numbers)]
+        if len(new):
+            both = [np.concatenate(parts) for parts in zip(known, law(np.unique(new)), strict=True)]
+            order = both[0].argsort()
+            self._known = known = KnownPairs._make(part[order] for part in both)
+        return known
 
 
 class Meetings(NamedTuple):
@@ -213,17 +250,13 @@ class GivenPairs:
         met = [self.of_pair(number) for number in (one * self.blocks + others).tolist()]
         return np.array([0.0 if meets is None else meets.retardation for meets in met])
 
-    def take(self, pair: Integers, shared: Array, friction: Array, alone: Flags) -> None:
-        """Write dashpots (n, 5) and friction (n,) of the pairs that have no joint and are given."""
-        if self.springs.pairs is None:
-            return
-        for number in np.unique(pair[alone]).tolist():
+    def take(self, pair: Integers, shared: Array, friction: Array) -> None:
+        """Write dashpots (n, 5) and friction (n,) of those of pairs without a joint that are given."""
+        for i, number in enumerate(pair.tolist() if self.springs.pairs is not None else ()):
             if (meets := self.of_pair(number)) is not None:
-                there = alone & (pair == number)
-                sprung = there & np.isfinite(shared[:, 2])
-                friction[there] = meets.friction
-                shared[there, 1] = meets.retardation * shared[there, 0]
-                shared[sprung, 3] = meets.retardation * shared[sprung, 2]
+                friction[i], shared[i, 1] = meets.friction, meets.retardation * shared[i, 0]
+                if math.isfinite(shared[i, 2]):
+                    shared[i, 3] = meets.retardation * shared[i, 2]
 
 
 def law_of(k: Array, others: Array) -> Law:
