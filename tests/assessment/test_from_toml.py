@@ -338,15 +338,19 @@ def test_every_public_effect_and_builder_is_in_the_schema():
     assert {"Tie.of_bar", "Wedge", "EarthPressure", "Block.from_slenderness!"} <= set(parts)
 
 
-def test_a_kinematic_check_brings_no_mujoco():
+def test_a_kinematic_check_and_its_command_bring_no_mujoco():
     """Whatever the file has for runs by other solvers and for reports, which bring Matplotlib."""
     sections = ["", "[run]\nsolver = 'explicit'\n", "[run]\nrtol = 1e-8\n", "[report]\ntitle = 'x'\n"]
     code = f"""
-import sys
+import io, sys
 import mjrock as mr
+from mjrock.__main__ import main
 for text in {[f"{SITE}{WALL}{section}{EFFECTS}" for section in sections]!r}:
     print(mr.from_toml(text=text).check()[""].table())
     unneeded = "mujoco", "pandas", *(["matplotlib"] if "[report]" not in text else [])
     assert not [name for name in unneeded if name in sys.modules], text
+sys.stdin = io.TextIOWrapper(io.BytesIO(text.encode()))
+assert main(["check", "-"]) < 2
+assert "mujoco" not in sys.modules
 """
     subprocess.run([sys.executable, "-W", "error", "-W", "ignore::UserWarning", "-c", code], check=True)

@@ -191,11 +191,14 @@ def test_the_normal_is_that_of_the_shortest_distance(height, normal):
     assert contact.mass == pytest.approx(2 / normal**2, rel=1e-3)
 
 
-@pytest.mark.parametrize("integrator", ["Euler", "RK4"])
-@pytest.mark.parametrize(("timestep", "mass"), [(1.5e-3, 2.0), (5e-3, 2.0), (5e-2, 2.0), (5e-3, 8.0), (5e-2, 8.0)])
-@pytest.mark.parametrize("e", [0.1, 0.9, 1.0])
-def test_a_step_that_does_not_resolve_it_adds_no_energy(e, timestep, mass, integrator):
+STEPS = [(1.5e-3, 2.0), (5e-3, 2.0), (5e-2, 2.0), (5e-3, 8.0), (5e-2, 8.0)]
+"""Steps [s] that do not resolve a contact, and masses [kg]."""
+
+
+@pytest.mark.parametrize(("integrator", "step", "e"), crossed(["Euler", "RK4"], STEPS, [0.1, 0.9, 1.0]))
+def test_a_step_that_does_not_resolve_it_adds_no_energy(integrator, step, e):
     """Also where the point feels a quarter of the mass that was given, as at a corner."""
+    timestep, mass = step
     spec = mujoco.MjSpec.from_string(scene(FLOOR, BALL, options=f'integrator="{integrator}"'))
     with pytest.warns(UserWarning, match="does not resolve"):
         contact = mr.contact_for(spec, "ball", "floor", k=1e6, restitution=e, timestep=timestep, mass=mass)

@@ -50,12 +50,12 @@ def test_a_panel_pushed_at_its_top_has_the_force_of_a_rigid_block_down_to_overtu
 
 @pytest.mark.parametrize("k_s", among([None, 1e10], None))
 def test_a_panel_pushed_to_and_fro_loses_friction_times_path(k_s):
-    history = ([0.0, 1.0, 3.0, 5.0], [0.0, 0.05, -0.05, 0.05])
+    history = ([0.0, 0.6, 1.8, 3.0], [0.0, 0.03, -0.03, 0.03])
     jack = actuator(-B, 0.1, history)
-    answer, force = pushed(panel(0.3, k_s=k_s, k_n=1e10), jack, duration=5.0, output_step=1e-3)
+    answer, force = pushed(panel(0.3, k_s=k_s, k_n=1e10), jack, duration=3.0, output_step=1e-3)
     foot = answer.pose[:, 0, 0] - H * np.sin(answer.theta[:, 0])
     path = np.abs(np.diff(foot)).sum()
-    assert path > 0.24
+    assert path > 0.14
     assert answer.ledger.friction[-1] == pytest.approx(0.3 * WEIGHT * path, rel=0.005)
     assert answer.ledger.dashpots["actuator_0"][-1] < 0.02 * answer.ledger.friction[-1]
     work = np.trapezoid(force * WEIGHT, np.interp(answer.t, *history))
@@ -63,8 +63,8 @@ def test_a_panel_pushed_to_and_fro_loses_friction_times_path(k_s):
     moved = answer.pose[:, 0, 0] - (H - 0.1) * np.sin(answer.theta[:, 0])
     passed_on = np.trapezoid(force * WEIGHT, moved) + 0.5 * (force[-1] * WEIGHT) ** 2 / 1e8
     assert work == pytest.approx(passed_on + answer.ledger.dashpots["actuator_0"][-1], rel=0.005)
-    assert np.median(force[(answer.t > 0.5) & (answer.t < 1.0)]) == pytest.approx(0.3, rel=0.01)
-    assert np.median(force[(answer.t > 2.0) & (answer.t < 3.0)]) == pytest.approx(-0.3, rel=0.01)
+    assert np.median(force[(answer.t > 0.3) & (answer.t < 0.6)]) == pytest.approx(0.3, rel=0.01)
+    assert np.median(force[(answer.t > 1.2) & (answer.t < 1.8)]) == pytest.approx(-0.3, rel=0.01)
 
 
 @pytest.mark.parametrize("in_space", [False, True])

@@ -44,7 +44,7 @@ def test_what_lies_on_fixed_blocks_without_a_joint_presses_on_these():
 def test_a_block_that_is_thrown_off_its_table_comes_to_rest_on_the_ground():
     blocks = [GROUND, TABLE, box(-0.5, -0.1, 1, 1.3, name="box")]
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.5, xi=0.2)
-    case = mr.MasonryCase(masonry, 3.0, velocity=[(0, 0, 0), (2.5, 0, 0)])
+    case = mr.MasonryCase(masonry, 2.2, velocity=[(0, 0, 0), (2.5, 0, 0)])
     run = mr.solve_explicit(case, ledger=True)
     x, z, theta = run.pose[-1, 1]
     assert "box" in run.fallen
@@ -81,7 +81,7 @@ def test_a_block_that_is_thrown_at_any_speed_stays_above_the_ground(flat, speed)
         blocks = [mr.Polyhedron.prism(block) for block in blocks]
         velocity = [(0,) * 6, (speed, 0, 0, 0, 0, 0)]
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.5, xi=0.2, frequency=60.0)
-    run = mr.solve_explicit(mr.MasonryCase(masonry, 2.5, velocity=velocity), output_step=5e-3)
+    run = mr.solve_explicit(mr.MasonryCase(masonry, 2.0, velocity=velocity), output_step=5e-3)
     x, z, theta = run.pose[-1, 1] if flat else (*run.pose[-1, 1, [0, 2]], 2 * np.arctan2(*run.pose[-1, 1, [5, 3]]))
     lowest = 1.15 + z - 0.15 * abs(np.cos(theta)) - 0.2 * abs(np.sin(theta))
     assert x > 0.3
@@ -94,7 +94,7 @@ def test_a_block_twenty_times_as_long_out_of_the_plane_falls_alike():
     for length in (1.0, 20.0):
         blocks = [replace(block, length=length) for block in (GROUND, TABLE, box(-0.5, -0.1, 1, 1.3, name="box"))]
         masonry = mr.Masonry(blocks, k_n=1e8, friction=0.5, xi=0.2, frequency=60.0)
-        poses.append(mr.solve_explicit(mr.MasonryCase(masonry, 1.2, velocity=[(0, 0, 0), (2.5, 0, 0)])).pose)
+        poses.append(mr.solve_explicit(mr.MasonryCase(masonry, 0.9, velocity=[(0, 0, 0), (2.5, 0, 0)])).pose)
     assert poses[0][-1, 1, 0] > 0.3
     np.testing.assert_allclose(poses[1], poses[0], atol=1e-9)
 
@@ -105,13 +105,14 @@ def test_a_face_ends_where_it_ends():
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.2, xi=0.2)
     for reach, tips in ((0.25, False), (0.40, True)):
         speed = np.sqrt(2 * 0.2 * mr.GRAVITY * reach)
-        run = mr.solve_explicit(mr.MasonryCase(masonry, 2.0, velocity=[(0, 0, 0), (speed, 0, 0)]))
+        duration = 1.6 if tips else 1.0
+        run = mr.solve_explicit(mr.MasonryCase(masonry, duration, velocity=[(0, 0, 0), (speed, 0, 0)]))
         assert ("box" in run.fallen) == tips, reach
         if not tips:
             assert run.pose[-1, 1, 0] == pytest.approx(reach, rel=0.02)
 
 
-@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("in_space", among([False, True], True))
 def test_a_long_face_ends_where_it_ends_too(in_space):
     """On a step of 10 m a block of 1 m tips when its centroid has come to lie 50 mm past the edge."""
     blocks = [box(-30, 30, -1, 0, fixed=True), box(-10, 0, 0, 1, fixed=True), box(-1.4, -0.4, 1, 1.4, name="box")]

@@ -115,7 +115,7 @@ def test_a_slab_and_a_lintel_are_met_where_their_supports_have_gone(prisms):
 
     t = np.linspace(0, 0.2, 61)
     sunk = -0.25 * (1 - np.cos(np.pi * t / 0.2))
-    slab = followed([GROUND, box(-0.5, 0.5, 0, 0.5)], 1.5, ground=(t, 0 * t, sunk))
+    slab = followed([GROUND, box(-0.5, 0.5, 0, 0.5)], 1.1, ground=(t, 0 * t, sunk))
     up = 2 if prisms else 1
     assert slab.pose[-1, 0, up] == pytest.approx(-0.5, abs=1e-3)
     assert slab.stats["overlap"] < 0.01

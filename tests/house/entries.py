@@ -349,7 +349,7 @@ ENTRIES = {
     "Polyhedron.box": entry(mr.Polyhedron.box, size=(1, 1, 1), centre=(0, 0, 0), density=2e3, fixed=False, name=None),
     "Polyhedron.prism": entry(mr.Polyhedron.prism, polygon=COLUMN.blocks[1], middle=0.0),
     "PowerLaw": entry(mr.PowerLaw, coefficient=0.5, slenderness_exponent=2, stiffness_exponent=2, r_squared=1),
-    "push": entry(mr.push, masonry=COLUMN, driver=1, to=2.0**-10, inertia=2.0**-7, wide=("driver", "to", "inertia")),
+    "push": entry(mr.push, masonry=COLUMN, driver=1, to=2.0**-10, inertia=2.0**-5, wide=("driver", "to", "inertia")),
     "pushover": entry(mr.pushover, case=SHORT, contacts=CONTACTS, rotations=[0.01, 0.05], points=30),
     "records_in": entry(mr.records_in, folder="records"),
     "reference_frequency": entry(mr.reference_frequency, wall=WALL, k_n=5e8, points=2),

@@ -261,7 +261,7 @@ def test_the_file_explains_itself(path):
 def test_xarray_opens_it(path):
     xarray = pytest.importorskip("xarray")
     pytest.importorskip("h5netcdf")
-    for kind in ("mortar", "shaken wall, MuJoCo", "in space"):
+    for kind in ("mortar", "in space"):
         found = answer(kind)
         made = found.to_xarray()
         with xarray.open_dataset(found.save(path), engine="h5netcdf") as read:
@@ -452,9 +452,9 @@ class TestRefused:
         whole = found.save(path).read_bytes()
         random = np.random.default_rng(1)
         refused = 0
-        for i in range(60):
+        for i in range(40):
             torn = bytearray(whole)
-            if i < 15:
+            if i < 10:
                 torn = torn[: int(random.integers(len(whole)))]
             else:
                 torn[int(random.integers(len(whole) if i % 2 else 4096))] ^= 1 << int(random.integers(8))
@@ -465,7 +465,7 @@ class TestRefused:
                 refused += str(path) in str(error)
             else:
                 assert differences(read, found) == []
-        assert 30 < refused < 60
+        assert 20 < refused < 40
 
     @pytest.mark.parametrize(
         "name", ["mjrock.examples.01_release.x", "mjrock.x", "os.system", "simulate", "mjrock.result.tree.Writer"]
