@@ -224,7 +224,7 @@ def test_records_are_called_by_station_component_and_factor(tmp_path):
 
 def test_an_italian_report_of_blocks_names_them_in_italian(tmp_path):
     column = mr.Masonry.stack([mr.Block.from_size(0.4, 0.5)] * 8, k_n=1e9, friction=0.9)
-    curve = mr.limit_curve(column, 1)
+    curve = mr.limit_curve(column, 1, poses=20)
     run = mr.solve_explicit(mr.MasonryCase(column, 0.01, motion=mr.GroundMotion.half_sine(0.5, 0.2)))
     checks = {
         "curva": [mr.dynamic_check([run], curve=curve, natural=True)],
@@ -272,7 +272,7 @@ def test_section_and_elevation_have_one_scale_or_say_that_they_have_not(length, 
 
 def test_a_check_of_blocks_names_what_moves_and_lists_its_blocks(tmp_path):
     masonry = masonry_of(2)
-    check = mr.mechanism_check(mr.limit_curve(masonry, 1), SLV)
+    check = mr.mechanism_check(mr.limit_curve(masonry, 1, poses=20), SLV)
     text = read(mr.report(mr.MasonryCase(masonry, 1.0), (), tmp_path / "a.html", checks={"statue": check}))
     assert "what moves" in text
     for said in ("0.4321; 2", "1889", "1.2345 GN/m³", "0.6543", "2.2345 m/s²"):
