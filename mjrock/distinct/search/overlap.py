@@ -60,11 +60,11 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
             (float(depth[j]), i, *map(int, blocks[:, j])) for j in np.argsort(-depth)[:DEEPEST_PAIRS] if depth[j] > 0
         }
         deepest = set(heapq.nlargest(DEEPEST_PAIRS, deepest | here)) | {each for each in deepest | here if each[1] == 0}
-    worst, at_start, message = 0.0, 0.0, ""
+    worst, at_start, message, finder = 0.0, 0.0, "", search.finder
+    posed = {i: finder.posed(poses[i]) for i in {each[1] for each in deepest}}
     for _, i, a, b in deepest:
-        finder = search.finder
-        solids, (ours, theirs) = finder.posed(poses[i]), (finder.parts_of(a), finder.parts_of(b))
-        common = sum(common_volume(solids, one, other) for one in ours for other in theirs)
+        ours, theirs = finder.parts_of(a), finder.parts_of(b)
+        common = sum(common_volume(posed[i], one, other) for one in ours for other in theirs)
         share = common / float(finder.volumes[[a, b]].min())
         at_start = max(at_start, share if i == 0 else 0.0)
         if share > worst:
@@ -121,14 +121,17 @@ def common_volume(solids: Solids, a: int, b: int) -> float:
     kept, blocks = [], [solids.corners[solids.corner[block] : solids.corner[block + 1]] for block in (a, b)]
     one_plane = FLUSH * float(max(np.abs(corners).max() for corners in blocks))
     for block, other in ((a, b), (b, a)):
+        of_other = range(solids.face[other], solids.face[other + 1])
+        walls = [(face_corners(solids, wall)[0], solids.normals[wall]) for wall in of_other]
         for face in range(solids.face[block], solids.face[block + 1]):
             normal, polygon = solids.normals[face], face_corners(solids, face)
-            for wall in range(solids.face[other], solids.face[other + 1]):
+            for corner, outwards in walls:
                 if not len(polygon):
                     break
-                beyond = (polygon - face_corners(solids, wall)[0]) @ solids.normals[wall]
-                flush = np.abs(beyond).max(initial=0.0) < one_plane and normal @ solids.normals[wall] > 0
-                if not flush:
+                beyond = (polygon - corner) @ outwards
+                least, most = beyond.min(), beyond.max()
+                flush = -one_plane < least and most < one_plane and normal @ outwards > 0
+                if not flush and most > 0:
                     polygon = kept_of(polygon, -beyond)
                 if len(polygon) < 3 or (flush and block == b):  # a face that two blocks share counts once
                     polygon = polygon[:0]
