@@ -28,9 +28,10 @@ from scipy.sparse import csr_array
 
 from ..bars import Bar
 from ..geometry.frames import SPACE
+from ..geometry.graph import connected_parts
 from ..geometry.kinematics import Places, gaps
 from ..geometry.poses import moved, turned
-from ..linear import lowest_mode, solution
+from ..linear import is_clearly_stable, lowest_mode, solution
 from ..problem.masonry.laws.joint_law import shear_limit
 from ..quantities import GRAVITY, Array, Flags, Integers
 from .pattern import PairPattern, Springs
@@ -322,9 +323,8 @@ def imperfection(potential: Potential, trial: Trial) -> Array:
     """
     places, freedom = potential.structure.places, potential.structure.places.freedom
     count, rough = len(trial.missing) // freedom.nv, trial.sliders.limit > 0
-    pairs = places.body[rough], places.face_body[rough] % (count + 1)  # the ground is the last
-    connected = csr_array((np.ones(int(rough.sum())), pairs), shape=(count + 1, count + 1))
-    group = scipy.sparse.csgraph.connected_components(connected, directed=False)[1]
+    pairs = np.column_stack([places.body[rough], places.face_body[rough] % (count + 1)])  # the ground is the last
+    group = connected_parts(pairs, count + 1)
     forces = np.zeros((count, freedom.nv))
     forces[group[:-1] == group[-1], : freedom.translations - 1] = [1.0, 0.5][: freedom.translations - 1]
     return IMPERFECTION * float(np.abs(trial.missing).max()) * forces.ravel()
@@ -484,7 +484,10 @@ def falling_direction(potential: Potential, search: Search, trial: Trial) -> Arr
     stiffness = normal_stiffness(potential, trial, np.where(presses, trial.springs, 0.0))
     most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
     whole = stiffness + shear_stiffness(trial.friction, 1.0) + potential.pattern.taken(bent)
-    lowest, direction = lowest_mode(potential.pattern.matrix(whole), most)
+    matrix = potential.pattern.matrix(whole)
+    if is_clearly_stable(matrix):
+        return None
+    lowest, direction = lowest_mode(matrix, most)
     return direction if lowest < -NEGLIGIBLE_STIFFNESS * float(np.abs(stiffness).max()) else None
 
 

@@ -72,6 +72,17 @@ def test_motions_that_are_held_twice_or_by_nothing(monkeypatch):
     assert answers == pytest.approx([2.5, 2.5, 2.5], rel=1e-9)
 
 
+def test_what_is_clearly_stable_has_no_eigenvalue_near_zero(monkeypatch):
+    axes = np.linalg.qr(np.random.default_rng(0).standard_normal((6, 6)))[0]
+
+    def clearly(lowest):
+        return linear.is_clearly_stable(csc_array(axes @ np.diag([lowest, 1.0, 2.0, 3.0, 4.0, 5.0]) @ axes.T))
+
+    assert [clearly(lowest) for lowest in (1e-9, 0.0, -1e-9)] == [True, False, False]
+    monkeypatch.setattr(linear, "SOLVED_IN_FULL", 5)
+    assert not clearly(1.0)
+
+
 @pytest.mark.parametrize("small", [0.0, 1e-18])
 def test_a_matrix_whose_diagonal_is_no_pivot_is_solved_with_others(small, monkeypatch):
     monkeypatch.setattr(linear, "MANY_UNKNOWNS", 0)

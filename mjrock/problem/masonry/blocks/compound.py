@@ -166,7 +166,7 @@ class Compound:
         """In space, principal moments of inertia and their axes."""
         return principal_of(self.inertia)
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Largest distance of a corner from the centroid [m]."""
         return float(np.linalg.norm(self.corners - self.centroid, axis=1).max())

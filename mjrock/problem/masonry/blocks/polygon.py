@@ -167,7 +167,7 @@ class Polygon:
                 ends.append(min(x0, x1) if z1 == z0 else x0 + share * (x1 - x0))
         return float(min(ends, default=self.corners[:, 0].min()))
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Largest distance of a vertex from the centroid [m]."""
         return float(np.hypot(*(self.corners - self.centroid).T).max())

@@ -194,7 +194,7 @@ class Polyhedron:
         """Principal moments of inertia and their axes."""
         return principal_of(self.inertia)
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Largest distance of a vertex from the centroid [m]."""
         return float(np.linalg.norm(self.corners - self.centroid, axis=1).max())

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import hstack
+from scipy.sparse import csc_array, hstack
 
 from ....notebook import NotebookPicture
 from ....quantities import Array, named
@@ -193,7 +193,7 @@ def _associated(problem: LimitProblem, least: float) -> LimitForces | None:
     sizes, friction, total = sizes_of(masonry), masonry.joint_friction, float(np.abs(weight_of(masonry)).sum())
     pressed, lines = cones(masonry, friction, tangents), masonry.lines
     bonds = bond_forces(masonry, tangents)
-    raised, count = (grown.ravel() / total / sizes)[:, None], pressed.shape[1]
+    raised, count = csc_array((grown.ravel() / total / sizes)[:, None]), pressed.shape[1]
     end = count + len(bonds.limits)
     highest = np.concatenate([np.full(count, np.inf), bonds.limits / total, ties.strength / total, [np.inf]])
     bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))

@@ -248,7 +248,7 @@ def _balanced(
         if cone is not None:
             edges.append(cones(masonry, cone))
             cost.append(np.full(edges[-1].shape[1], price))
-    missing = eye_array(len(weight))
+    missing = eye_array(len(weight), format="csc")
     bonds, ties = bond_forces(masonry), ties or Pulls.from_forces(masonry)
     limits = np.append(bonds.limits, ties.strength)
     columns = hstack([*edges, missing, -missing, bonds.columns, ties.columns])
