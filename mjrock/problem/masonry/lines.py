@@ -178,7 +178,7 @@ def rates(blocks: Sequence[AnyBlock], lines: Lines, directions: Array) -> csr_ar
     times = (len(directions) if directions.ndim == 3 else 1, 1)
     pair = np.tile(number[np.column_stack([lines.body, lines.face])], times)
     arms = np.tile(lines.at - centroids[lines.body], times), np.tile(lines.at - centroids[lines.face], times)
-    return rates_of(pair, arms, directions.reshape(len(pair), -1), int(number.max()) + 1)
+    return rates_of(pair, arms, directions.reshape(-1, directions.shape[-1]), int(number.max()) + 1)
 
 
 def free_numbers(blocks: Sequence[AnyBlock]) -> Integers:
