@@ -147,11 +147,11 @@ class Plan:
         """The control of a field with tables, and what these may be; an empty one of a field without any."""
         for key, control in (("items", "list"), ("", "table"), ("additionalProperties", "named")):
             for name, one in kinds:
-                of = one.get(key) if key else one
-                found = [*self._kinds(of, "" if key else name)] if isinstance(of, Mapping) else []
-                if any("properties" in each for _, each in found):
-                    every = found if key else kinds
-                    return control, self._variants([pair for pair in every if "properties" in pair[1]], here)
+                part = one.get(key) if key else one
+                alternatives = [*self._kinds(part, "" if key else name)] if isinstance(part, Mapping) else []
+                if any("properties" in alternative for _, alternative in alternatives):
+                    nested = alternatives if key else kinds
+                    return control, self._variants([pair for pair in nested if "properties" in pair[1]], here)
         return ("pairs", ()) if any(_is_table(one) for _, one in kinds) else ("", ())
 
     def _kinds(self, node: Part, name: str = "") -> Iterator[tuple[str, Part]]:
@@ -159,28 +159,28 @@ class Plan:
         if "$ref" in node:
             name = str(node["$ref"]).rpartition("/")[2]
             yield from self._kinds(self.schema["$defs"][name], name)
-        elif found := node.get("anyOf", node.get("oneOf")):
-            for one in found:
-                yield from self._kinds(one)
+        elif alternatives := node.get("anyOf", node.get("oneOf")):
+            for alternative in alternatives:
+                yield from self._kinds(alternative)
         elif node:
             yield name, node
 
     def _variants(self, tables: list[tuple[str, Part]], here: str) -> tuple[Variant, ...]:
         """What a table may be."""
-        found = []
-        kinds = {one["properties"].get("kind", {}).get("const") for _, one in tables}
+        variants = []
+        kinds = {table["properties"].get("kind", {}).get("const") for _, table in tables}
         chosen = VARIANT_KEYS if len(kinds) > 1 else VARIANT_KEYS[1:]
-        for i, (name, one) in enumerate(tables):
-            properties = one["properties"]
+        for i, (name, table) in enumerate(tables):
+            properties = table["properties"]
             consts = {key: properties[key] for key in chosen if "const" in properties.get(key, {})}
             names = {key: str(given["const"]) for key, given in consts.items()}
             usual = all("default" in given for given in consts.values())
-            id = name if name and one is self.schema["$defs"].get(name) else f"{here}/{i}"
+            id = name if name and table is self.schema["$defs"].get(name) else f"{here}/{i}"
             section = ".".join((here.rpartition(".")[2], *names.values()))
-            self._owners[id] = str(one.get("title") or names.get("kind") or section)
-            self._register(id, one)
-            found.append(Variant(id, self._variant_label(str(one.get("title", "")), names), names, usual))
-        return tuple(found)
+            self._owners[id] = str(table.get("title") or names.get("kind") or section)
+            self._register(id, table)
+            variants.append(Variant(id, self._variant_label(str(table.get("title", "")), names), names, usual))
+        return tuple(variants)
 
     def _register(self, id: str, table: Part) -> None:
         """Plan the fields of a table, once."""
@@ -246,8 +246,8 @@ class Plan:
 
     def _label(self, key: str, place: str) -> str:
         """What an argument is called: of its class, by the form, by the report, or as it is."""
-        own = f"arg_{self._owners.get(place, '').partition('.')[0]}_{key}"
-        known = (own, f"arg_{key}", f"in_{key}")
+        own_key = f"arg_{self._owners.get(place, '').partition('.')[0]}_{key}"
+        known = (own_key, f"arg_{key}", f"in_{key}")
         return next((self.words(name) for name in known if name in self.words.texts), key.replace("_", " "))
 
     def _variant_label(self, title: str, names: Mapping[str, str]) -> str:
@@ -263,8 +263,8 @@ class Plan:
         """The variant of a table that its `kind` and `make` name; the nearest where none fits."""
 
         def fits(one: Variant, key: str) -> bool:
-            own = one.names.get(key)
-            return values[key] == own if key in values else own is None or one.usual
+            variant_name = one.names.get(key)
+            return values[key] == variant_name if key in values else variant_name is None or one.usual
 
         used = {key for one in field.variants for key in one.names}
         fitting = [one for one in field.variants if all(fits(one, key) for key in used)]
@@ -276,8 +276,8 @@ class Plan:
 
     def _read(self, field: Field, state: Document) -> Document:
         fields = self.tables[self.variant(field, state).id]
-        found = {key: self.field(fields, key) for key, one in state.items() if one != ""}
-        return {key: self._value(field, state[key]) for key, field in found.items()}
+        known_fields = {key: self.field(fields, key) for key, one in state.items() if one != ""}
+        return {key: self._value(field, state[key]) for key, field in known_fields.items()}
 
     def _value(self, field: Field | None, value: object) -> object:
         if isinstance(value, Mapping):
@@ -299,29 +299,29 @@ class Plan:
         field = field or self.root
         fields = self.tables[self.variant(field, tables).id]
         for key, value in tables.items():
-            own = self.field(fields, key)
-            for at, one in _places_of_items(value, (key,)):
-                if own is not None and own.control in FILE_CONTROLS and not isinstance(one, Mapping):
-                    yield at, one
-                elif own is not None and own.variants and isinstance(one, Mapping):
-                    yield from ((at + place, name) for place, name in self._files_of(own, one))
+            own_field = self.field(fields, key)
+            for item_place, item in _places_of_items(value, (key,)):
+                if own_field is not None and own_field.control in FILE_CONTROLS and not isinstance(item, Mapping):
+                    yield item_place, item
+                elif own_field is not None and own_field.variants and isinstance(item, Mapping):
+                    yield from ((item_place + place, name) for place, name in self._files_of(own_field, item))
 
     def _files_of(self, field: Field, table: Document) -> Iterator[tuple[Place, object]]:
         """The same of a table, or of tables by name."""
         if field.control != "named":
             yield from self.files_in(table, field)
             return
-        for name, one in table.items():
-            if isinstance(one, Mapping):
-                yield from (((name, *place), path) for place, path in self.files_in(one, field))
+        for name, value in table.items():
+            if isinstance(value, Mapping):
+                yield from (((name, *place), path) for place, path in self.files_in(value, field))
 
     @property
     def as_json(self) -> dict[str, object]:
         """The plan as the page takes it."""
 
         def plain(field: Field) -> dict[str, object]:
-            own = field._asdict() | {"variants": [one._asdict() for one in field.variants]}
-            return {key: one for key, one in own.items() if key != "types" and one not in ("", (), [], False)}
+            values = field._asdict() | {"variants": [one._asdict() for one in field.variants]}
+            return {key: one for key, one in values.items() if key != "types" and one not in ("", (), [], False)}
 
         tables = {id: [plain(field) for field in fields] for id, fields in self.tables.items()}
         return {"tables": tables, "root": plain(self.root)}
@@ -346,8 +346,8 @@ def _is_table(node: Part) -> bool:
 def _types(node: Part) -> list[str]:
     if isinstance(node.get("const"), bool):
         return ["boolean"]
-    given = node.get("type", "string" if "enum" in node else [])
-    return [given] if isinstance(given, str) else list(given)
+    types = node.get("type", "string" if "enum" in node else [])
+    return [types] if isinstance(types, str) else list(types)
 
 
 def _unit(node: Part) -> str:
@@ -418,8 +418,8 @@ def state_of(tables: Document) -> Document:
 
 def texts_of(words: Words) -> dict[str, str]:
     """The texts that the page needs, by their names in its script."""
-    own = {key: text[words.language] for key, text in words.texts.items() if key.startswith("form_")}
-    return {key.removeprefix("form_"): text for key, text in own.items()}
+    form_texts = {key: text[words.language] for key, text in words.texts.items() if key.startswith("form_")}
+    return {key.removeprefix("form_"): text for key, text in form_texts.items()}
 
 
 def languages_named(words: Words) -> list[tuple[str, str]]:

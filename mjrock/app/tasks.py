@@ -67,20 +67,20 @@ def form(request: Payload, send: Send) -> None:
     """The plan of the form in a language, with its texts and templates."""
     words = words_of(request.get("language"))
     states = {name: state_of(template) for name, template in templates_of().items()}
-    own = {
+    plan_parts = {
         "language": words.language,
         "languages": languages_named(words),
         "texts": texts_of(words),
         "templates": [(name, words.or_else(f"template_{name}", name)) for name in states],
         "states": states,
     }
-    send(plan_of(words.language).as_json | own)
+    send(plan_of(words.language).as_json | plan_parts)
 
 
 def templates_of() -> dict[str, dict[str, Any]]:
     """The tables of each template by its name, with an empty title block."""
-    left = "title", "project"
-    return {name: {key: one for key, one in own.items() if key not in left} for name, own in seeds().items()}
+    left_out = "title", "project"
+    return {name: {key: one for key, one in own.items() if key not in left_out} for name, own in seeds().items()}
 
 
 def open_file(request: Payload, send: Send) -> None:
@@ -133,8 +133,8 @@ def short_verdict(mechanisms: Sequence[Mechanism], words: Words) -> str:
 def sketch_parts(assessment: Assessment, words: Words) -> Iterator[Item]:
     """The drawing of each mechanism, with its name where there are several, and its number."""
     count = len(assessment.mechanisms)
-    for number, (name, one) in enumerate(assessment.mechanisms.items()):
-        figure, caption = drawing_of(one.problem, words)
+    for number, (name, mechanism) in enumerate(assessment.mechanisms.items()):
+        figure, caption = drawing_of(mechanism.problem, words)
         yield {"sketch": svg_of(figure), "alt": caption, "name": name, "number": number, "count": count}
 
 
@@ -217,10 +217,10 @@ def farthest_response(responses: Sequence[Response]) -> Response:
 def report(request: Payload, send: Send) -> None:
     """The report in a language, with the runs that are kept: a PDF, or a page of HTML where WeasyPrint is missing."""
     words = words_of(request.get("language"))
-    kept = request.get("responses")
+    kept_responses = request.get("responses")
     with Folder(request) as folder, faults_sent(send, words):
         assessment = folder.assessment()
-        runs = None if kept is None else pickle.loads(kept)
+        runs = None if kept_responses is None else pickle.loads(kept_responses)
         written, note = folder.path / "written", ""
         written.mkdir()
         try:
@@ -262,9 +262,9 @@ def faults_sent(send: Send, words: Words, *kinds: type[Exception]) -> Iterator[N
     try:
         yield
     except AssessmentError as error:
-        found = [one._replace(message=words.message(one.message)) for one in error.faults]
-        lines = [words("form_line", line=one.line, message=one.message) if one.line else one.message for one in found]
-        send({"faults": [{"place": list(one.place), "message": line} for one, line in zip(found, lines, strict=True)]})
+        faults = [one._replace(message=words.message(one.message)) for one in error.faults]
+        lines = [words("form_line", line=one.line, message=one.message) if one.line else one.message for one in faults]
+        send({"faults": [{"place": list(one.place), "message": line} for one, line in zip(faults, lines, strict=True)]})
     except kinds as error:
         send({"faults": [{"place": [], "message": words.message(reason(error))}]})
 
@@ -281,11 +281,11 @@ class Folder:
 
     def __init__(self, request: Payload) -> None:
         self.request, self.files = request, dict[str, bytes]()
-        given = request.get("files") or {}
-        require_kind("files", given, dict)
-        if len(given) > MOST_FILES:
-            raise ValueError(f"files has {len(given)} files; the valid range is 0 to {MOST_FILES}")
-        for name, content in given.items():
+        files = request.get("files") or {}
+        require_kind("files", files, dict)
+        if len(files) > MOST_FILES:
+            raise ValueError(f"files has {len(files)} files; the valid range is 0 to {MOST_FILES}")
+        for name, content in files.items():
             require_kind(f"files[{name!r}]", content, str)
             is_plain = name == Path(name).name and not {"\\", "\0"} & set(name)
             if not is_plain or name in ("", ".", "..") or len(name) > LONGEST_NAME:

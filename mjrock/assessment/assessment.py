@@ -127,9 +127,9 @@ class Assessment:
             document = replaced(self.document, place, value)
             for table in (document, *document.get("mechanisms", {}).values()):
                 table.pop("records", None)  # no condition of a design is about them, and reading them takes long
-            whole = assessment_of(document, folder=self.folder, confined=self.confined)
-            changed = [str(place[1])] if place[0] == "mechanisms" else list(whole.mechanisms)
-            return {name: whole.mechanisms[name].check() for name in changed}
+            assessment = assessment_of(document, folder=self.folder, confined=self.confined)
+            changed = [str(place[1])] if place[0] == "mechanisms" else list(assessment.mechanisms)
+            return {name: assessment.mechanisms[name].check() for name in changed}
 
         try:
             return design(build, values, method=self.trials.get("method"))
@@ -376,5 +376,5 @@ def report_maker() -> Maker:
     """The keys of `[report]`."""
     from ..reporting.page import report
 
-    given = "case", "responses", "path", "e", "contacts", "checks", "project", "language", "sections"
-    return maker_of(report).without(*given)
+    left_out = "case", "responses", "path", "e", "contacts", "checks", "project", "language", "sections"
+    return maker_of(report).without(*left_out)

@@ -204,11 +204,11 @@ def _options(hint: Hint, of_owner: Mapping[str, Key]) -> dict[str, Key]:
 @cache
 def makers_of(kind: type) -> Makers:
     """All that makes an object of a class."""
-    found = {"": maker_of(kind, kind)}
+    makers = {"": maker_of(kind, kind)}
     for name, member in inspect.getmembers(kind, inspect.ismethod):
         if not name.startswith("_") and name in _constructors(kind):
-            found[name] = maker_of(member, kind)
-    return found
+            makers[name] = maker_of(member, kind)
+    return makers
 
 
 def _constructors(kind: type) -> set[str]:
@@ -239,8 +239,8 @@ def public_names() -> Collection[str]:
 
 def is_public(kind: type) -> bool:
     """Whether a class is one of the package that users know, or one of their own."""
-    own = kind.__module__.partition(".")[0] != __package__.partition(".")[0]
-    return own or kind.__name__ in public_names()
+    of_user = kind.__module__.partition(".")[0] != __package__.partition(".")[0]
+    return of_user or kind.__name__ in public_names()
 
 
 def classes_of(kinds: Sequence[Hint]) -> dict[str, type]:
@@ -249,8 +249,8 @@ def classes_of(kinds: Sequence[Hint]) -> dict[str, type]:
     public_names()
     bases = [kind for kind in kinds if isinstance(kind, type)]
     bases += [CombinedEffect] if Effect in bases else []
-    found = (one for base in bases for one in subclasses_of(base))
-    return {one.__name__: one for one in found if is_dataclass(one) and is_public(one) and one is not Link}
+    classes = (one for base in bases for one in subclasses_of(base))
+    return {one.__name__: one for one in classes if is_dataclass(one) and is_public(one) and one is not Link}
 
 
 def key_named(key: Key) -> str:

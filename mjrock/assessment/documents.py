@@ -138,15 +138,15 @@ def _demand(demand: object, place: Place) -> Tables:
         return {}
     states = demand if isinstance(demand, Mapping) else {"": demand}
     site, floors = Tables(), list[Tables]()
-    for name, one in states.items():
-        ground = one.ground if isinstance(one, FloorSpectrum) else one
+    for name, spectrum in states.items():
+        ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
         if not isinstance(ground, CodeSpectrum | PointSpectrum):
             raise UnwrittenError((*place, "site"), f"= {shown(ground)} is no spectrum of a code and no PointSpectrum")
         table = {"kind": type(ground).__name__} | table_of(ground, (type(ground),), (*place, "site"))
         site |= {name: table} if name else table
         floors.append(
-            {key: file_value(getattr(one, key), (), (*place, "floor", key)) for key in FLOOR.keys}
-            if isinstance(one, FloorSpectrum)
+            {key: file_value(getattr(spectrum, key), (), (*place, "floor", key)) for key in FLOOR.keys}
+            if isinstance(spectrum, FloorSpectrum)
             else {}
         )
     if any(floor != floors[0] for floor in floors):

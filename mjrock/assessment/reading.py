@@ -166,8 +166,8 @@ class Reader:
         if value is None:
             raise self.refusal(table.place, "{place} has no {name}; {remedy}", name=name, remedy=one_of(known))
         if not isinstance(value, str) or value not in known:
-            near = difflib.get_close_matches(str(value), known, 1)
-            remedy = Message("did you mean {near!r}?", near=near[0]) if near else one_of(known)
+            close_names = difflib.get_close_matches(str(value), known, 1)
+            remedy = Message("did you mean {near!r}?", near=close_names[0]) if close_names else one_of(known)
             values = {"value": shown(value), "remedy": remedy}
             raise self.refusal(table.place_of(name), "{place} = {value} is not known; {remedy}", **values)
         return value
@@ -241,17 +241,17 @@ class Reader:
         fitting = [items for items in rows if items[-1] is ... or len(items) == len(value)]
         if not fitting:
             raise self.refusal(place, "{place} has {count} values; it takes {due}", count=len(value), due=len(rows[0]))
-        found, wrong = [], False
+        items_read, has_fault = [], False
         for i, one in enumerate(value):
             item = fitting[0][0 if fitting[0][-1] is ... else i]
-            at = one.place if isinstance(one, Table) else (*place, i)
+            item_place = one.place if isinstance(one, Table) else (*place, i)
             try:
-                found.append(self._of_kinds(*kinds_and_range(item, within), one, at))
+                items_read.append(self._of_kinds(*kinds_and_range(item, within), one, item_place))
             except RefusedError:
-                wrong = True
-        if wrong:
+                has_fault = True
+        if has_fault:
             raise RefusedError
-        return tuple(found)
+        return tuple(items_read)
 
     def _table(self, kinds: tuple[Hint, ...], table: Table) -> object:
         """What a table within another stands for: an object of one of some classes, or texts by name."""
@@ -261,8 +261,9 @@ class Reader:
             return self.make(rest, maker)
         mapped = next((kind for kind in kinds if get_origin(kind) is not None and is_mapping(kind)), None)
         if mapped is not None:
-            of, within = kinds_and_range(get_args(mapped)[1], None)
-            return {name: self._of_kinds(of, within, one, table.place_of(name)) for name, one in table.values.items()}
+            hints, within = kinds_and_range(get_args(mapped)[1], None)
+            items = table.values.items()
+            return {name: self._of_kinds(hints, within, item, table.place_of(name)) for name, item in items}
         raise self._wrong(table.place, table, kinds, None)
 
     def _wrong(self, place: Place, value: object, kinds: tuple[Hint, ...], within: Within | None) -> RefusedError:
@@ -272,15 +273,15 @@ class Reader:
 
     def _unknown(self, place: Place, name: str, known: Sequence[str]) -> Message:
         """The message about a key that a table does not take."""
-        near = difflib.get_close_matches(name, known, 2)
-        others = Message("the valid ones are {known}", known=", ".join(known) or "none")
-        remedy = Message("did you mean {near}?", near=alternatively(near)) if near else others
+        close_names = difflib.get_close_matches(name, known, 2)
+        valid_names = Message("the valid ones are {known}", known=", ".join(known) or "none")
+        remedy = Message("did you mean {near}?", near=alternatively(close_names)) if close_names else valid_names
         return Message("{place} is not known; {remedy}", place=spelt_place(place), remedy=remedy)
 
     def _cause(self, error: Exception, table: Table, maker: Maker) -> tuple[Place, str]:
         """The key that an error of a class or function is about, and its message."""
-        found, names = str(error), {name: key_named(key) for name, key in maker.keys.items()}
-        place = _named_in(found, table, names)
+        text, names = str(error), {name: key_named(key) for name, key in maker.keys.items()}
+        place = _named_in(text, table, names)
         key = next((one for one in maker.keys.values() if table.place_of(key_named(one)) == place), None)
         within = None if key is None else key.within
         return place, caused(place, error, table.values.get(str(place[-1])) if key else None, within)

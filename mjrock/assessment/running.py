@@ -66,12 +66,12 @@ def run_maker(solver: str) -> Maker:
     """The keys of `[run]` for a solver: its options, and those that all have."""
     from ..study.analysis import solver_named
 
-    own = {
+    shared_keys = {
         "solver": Key("solver", Annotated[str, OneOf(SOLVERS)], "analytical", "by which the motion is solved"),
         "polarities": Key("polarities", bool, True, "whether each record is run in both polarities"),
     }
     call = solver_named(solver)
-    return Maker(call, own | dict(maker_of(call).without(*NOT_IN_FILE).keys), "How the mechanism is run.")
+    return Maker(call, shared_keys | dict(maker_of(call).without(*NOT_IN_FILE).keys), "How the mechanism is run.")
 
 
 def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: object) -> Shaking:

@@ -256,8 +256,8 @@ def one_of_form(one: Schema) -> Schema:
 
 def _number(kinds: tuple[Hint, ...], within: Within | None) -> Schema:
     """The schema of a number, or of a text with a unit."""
-    whole = within.whole if within else int in kinds and float not in kinds
-    schema: Schema = {"type": "integer"} if whole else {"type": ["number", "string"]}
+    is_whole = within.whole if within else int in kinds and float not in kinds
+    schema: Schema = {"type": "integer"} if is_whole else {"type": ["number", "string"]}
     if within is not None:
         schema |= {"minimum": _short(within.low)} if math.isfinite(within.low) else {}
         schema |= {"maximum": _short(within.high)} if math.isfinite(within.high) and not within.infinite else {}

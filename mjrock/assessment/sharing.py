@@ -53,10 +53,10 @@ def _beyond(tables: Schema, name: str) -> Schema:
     others, as what it requires beyond that one."""
     table: Schema = tables[name]
     free = f"{name.rstrip('?!')}?{'' if name.startswith('[') else '!'}"
-    keys, own = tables.get(free, {}).get("properties", {}), table.get("properties", {})
-    if name == free or not keys or keys.keys() != own.keys():
+    keys, own_keys = tables.get(free, {}).get("properties", {}), table.get("properties", {})
+    if name == free or not keys or keys.keys() != own_keys.keys():
         return table
-    further = {key: one for key, one in own.items() if one != keys[key] and "const" not in one}
+    further = {key: one for key, one in own_keys.items() if one != keys[key] and "const" not in one}
     needed = {"required": table["required"]} if "required" in table else {}
     return {"$ref": f"#/$defs/{free}"} | needed | ({"properties": further} if further else {})
 
@@ -65,15 +65,15 @@ def _over_parts(node: object, call: Callable[[object], object]) -> Any:
     """A part of a schema, with what a function makes of each part in it."""
     if not isinstance(node, dict):
         return node
-    made = dict(node)
+    result = dict(node)
     for key, value in node.items():
         if key in PARTS_BY_NAME:
-            made[key] = {name: call(one) for name, one in value.items()}
+            result[key] = {name: call(one) for name, one in value.items()}
         elif key in LISTED_PARTS:
-            made[key] = [call(one) for one in value]
+            result[key] = [call(one) for one in value]
         elif key in SINGLE_PART:
-            made[key] = call(value)
-    return made
+            result[key] = call(value)
+    return result
 
 
 def _text(part: object) -> str:

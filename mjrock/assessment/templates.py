@@ -30,9 +30,9 @@ it another one. None in a comment stands for a key that is left out.
 
 def seeds() -> dict[str, dict[str, Any]]:
     """The values of each template by its name, with what they share, and its `title`."""
-    found = tomllib.loads(TEMPLATE_FILE.read_text(encoding="utf-8"))
-    shared = found.pop("shared")
-    return {name: merged(shared, own) for name, own in found.items()}
+    tables = tomllib.loads(TEMPLATE_FILE.read_text(encoding="utf-8"))
+    shared = tables.pop("shared")
+    return {name: merged(shared, own) for name, own in tables.items()}
 
 
 def merged(shared: Document, own: Document) -> dict[str, object]:
@@ -72,8 +72,8 @@ class Writer:
         """The alternative that a table is of, by its `kind` and `make`."""
         for alternative in self.alternatives(node):
             parts = [alternative.get("properties", {}).get(key, {}) for key in ("kind", "make")]
-            given = [value.get(key, part.get("default")) for key, part in zip(("kind", "make"), parts, strict=True)]
-            if alternative.get("type") == "object" and given == [part.get("const") for part in parts]:
+            values = [value.get(key, part.get("default")) for key, part in zip(("kind", "make"), parts, strict=True)]
+            if alternative.get("type") == "object" and values == [part.get("const") for part in parts]:
                 return alternative
         return {}
 
@@ -84,19 +84,19 @@ class Writer:
         is_explained = schema.get("title", path) in self.explained
         self.explained.add(schema.get("title", path))
         below = {name: value[name] for name in sorted(value, key=[*keys, *value].index) if is_table(value[name])}
-        for name, one in value.items():
+        for name, item in value.items():
             if name not in below:
-                yield from explained(f"{toml_key(name)} = {toml_value(one)}", keys.get(name, {}))
+                yield from explained(f"{toml_key(name)} = {toml_value(item)}", keys.get(name, {}))
         if "mechanisms" in value:  # what stands above them is for all
-            common = [one.get("properties", {}).keys() for one in self.alternatives(node)]
-            keys = {name: key for name, key in keys.items() if all(name in one for one in common)}
+            common = [item.get("properties", {}).keys() for item in self.alternatives(node)]
+            keys = {name: key for name, key in keys.items() if all(name in item for item in common)}
         for name, key in keys.items():
             if not is_explained and name not in value and "const" not in key and not self.holds_tables(key):
                 yield from explained(f"#{name} = {default_of(key)}".rstrip(), key)
-        for name, one in below.items():
+        for name, item in below.items():
             key = keys.get(name) or schema.get("additionalProperties") or {}
             is_alike = key.keys() <= {"type", "description"}  # of a limit state: what the site has too
-            yield from self.below(schema if is_alike else key, one, f"{path}.{toml_key(name)}".lstrip("."))
+            yield from self.below(schema if is_alike else key, item, f"{path}.{toml_key(name)}".lstrip("."))
         further = [name for name, key in keys.items() if name not in value and self.holds_tables(key)]
         if further and not is_explained:
             where = f"[{path}]" if path else "this file"
@@ -118,8 +118,8 @@ class Writer:
 
     def holds_tables(self, node: Part) -> bool:
         """Whether a key is a table or a list of tables, whatever it is."""
-        found = [part for one in self.alternatives(node) for part in self.alternatives(one.get("items") or one)]
-        return all("properties" in one or one.get("type") == "object" for one in found)
+        alternatives = [part for one in self.alternatives(node) for part in self.alternatives(one.get("items") or one)]
+        return all("properties" in one or one.get("type") == "object" for one in alternatives)
 
 
 def is_table(value: object) -> bool:

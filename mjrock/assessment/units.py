@@ -74,12 +74,12 @@ def unit_named(text: str) -> Unit | None:
         return None
     total = PLAIN
     for part, sign in [*((one, 1) for one in over.split()), *((one, -1) for each in under for one in each.split())]:
-        found = PART.fullmatch(part)
-        if found is None or found[1] not in UNITS:
+        match = PART.fullmatch(part)
+        if match is None or match[1] not in UNITS:
             if not (part == "1" and sign > 0):
                 return None
             continue
-        total = total * UNITS[found[1]].raised(sign * int(found[2] or 1))
+        total = total * UNITS[match[1]].raised(sign * int(match[2] or 1))
     return total
 
 
@@ -100,27 +100,27 @@ def value_in(text: str, unit: str) -> float:
     Raises:
         UnitError: for a text that is no number with a unit, or one of another dimension, with what is due.
     """
-    found = TEXT.fullmatch(text)
-    due = unit_named(unit) or PLAIN
+    match = TEXT.fullmatch(text)
+    declared_unit = unit_named(unit) or PLAIN
     kind = Message("a number in {unit}", unit=unit) if unit else Message("a number")
     example = examples_of(unit) if unit else "0.5"
-    if found is None:
+    if match is None:
         raise UnitError(Message("is not {kind}, such as {example}", kind=kind, example=example))
-    number = Fraction(found[1])
-    if not found[2]:
+    number = Fraction(match[1])
+    if not match[2]:
         plain = unit or Message("a plain number")
         raise UnitError(Message("has no unit; write the number without quotes for {plain}", plain=plain))
-    if COMMA.match(found[2]):
+    if COMMA.match(match[2]):
         raise UnitError(Message("has a comma; the decimal mark is a point, as in 0.5"))
-    values = {"unit": found[2], "kind": kind, "example": example}
-    given = unit_named(found[2])
-    if given is None:
+    values = {"unit": match[2], "kind": kind, "example": example}
+    given_unit = unit_named(match[2])
+    if given_unit is None:
         unknown = "has the unit {unit!r}, which is not known; {kind} is due, such as {example}"
         raise UnitError(Message(unknown, **values))
-    scale = given.factor / due.factor
-    if given.exponents == due.exponents:
-        return float(number * scale) * (given.times / due.times)
-    weight = (Unit(due.exponents) * Unit(PER_S2)).exponents
-    if due.exponents[BASES.index("kg")] == 1 and unit in ("kg", "kg/m3") and given.exponents == weight:
-        return float(number * scale) * given.times / GRAVITY
+    scale = given_unit.factor / declared_unit.factor
+    if given_unit.exponents == declared_unit.exponents:
+        return float(number * scale) * (given_unit.times / declared_unit.times)
+    weight = (Unit(declared_unit.exponents) * Unit(PER_S2)).exponents
+    if declared_unit.exponents[BASES.index("kg")] == 1 and unit in ("kg", "kg/m3") and given_unit.exponents == weight:
+        return float(number * scale) * given_unit.times / GRAVITY
     raise UnitError(Message("has the unit {unit}, and {kind} is due, such as {example}", **values))

@@ -36,8 +36,8 @@ BAR = 0.25
 
 def ends_of(points: Array) -> Array:
     """The lowest and the highest coordinates of points [m], shape (..., d), as (2, d)."""
-    every = points.reshape(-1, points.shape[-1])
-    return np.array([every.min(axis=0), every.max(axis=0)])
+    rows = points.reshape(-1, points.shape[-1])
+    return np.array([rows.min(axis=0), rows.max(axis=0)])
 
 
 def round_length(wide: float) -> float:
@@ -131,9 +131,9 @@ class Bodies:
         case, fixed = self.moving.case, [*self.moving.case.fixed.values()]
         if not self.outlines:
             return ends_of(np.concatenate(fixed))
-        some = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int)).tolist()
+        frames = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int)).tolist()
         moving, rest = (
-            ends_of(np.array([self.corners(frame) for frame in some])),
+            ends_of(np.array([self.corners(frame) for frame in frames])),
             ends_of(case.rests[:, None] + self._padded),
         )
         stays = ends_of(np.concatenate(fixed) if fixed else case.rests)
@@ -141,8 +141,8 @@ class Bodies:
         beyond = 0.25 * room
         low = np.minimum(np.maximum(moving[0], rest[0] - [2 * room, beyond]), rest[1])
         high = np.maximum(np.minimum(moving[1], rest[1] + 2 * room), rest[0])
-        shown = np.maximum(stays[0], low - beyond), np.minimum(stays[1], high + beyond)
-        return np.array([np.minimum(low, shown[0]), np.maximum(high, shown[1])])
+        fixed_shown = np.maximum(stays[0], low - beyond), np.minimum(stays[1], high + beyond)
+        return np.array([np.minimum(low, fixed_shown[0]), np.maximum(high, fixed_shown[1])])
 
     @property
     def extent_seen(self) -> Array:
@@ -188,14 +188,14 @@ def draw_outlines(ax: Axes, bodies: Bodies) -> Update:
         ax.add_patch(patch)
     width = min(1.2, 12 / np.sqrt(max(1, len(bodies.outlines))))  # lines of many blocks would hide them
     look: Look = {"facecolors": bodies.colours, "edgecolor": "0.15", "linewidth": width}
-    drawn = PolyCollection([], **look, zorder=2, animated=True)
-    ax.add_collection(drawn, autolim=False)
+    outlines = PolyCollection([], **look, zorder=2, animated=True)
+    ax.add_collection(outlines, autolim=False)
     ax.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]")
 
     def update(frame: int) -> None:
         for patch, places in supports:
             patch.set_xy(places[frame])
-        drawn.set_verts(bodies.corners(frame))  # type: ignore[arg-type]  # one array is drawn the fastest
+        outlines.set_verts(bodies.corners(frame))  # type: ignore[arg-type]  # one array is drawn the fastest
 
     return update
 
@@ -233,11 +233,11 @@ def ties_of_masonry(ax: Axes, case: MasonryCase, bodies: Bodies) -> Update:
 
 def anchored(ax: Axes, moving: BodyMotion, tie: Anchored, *, markersize: float, edge: float = -np.inf) -> Update:
     """Draw a link of the plane, and its anchor as a square. An anchor beyond an x [m] is drawn there."""
-    held, anchor = link_ends(moving.case, tie)
+    block_end, anchor = link_ends(moving.case, tie)
     if anchor.block is None and anchor.point[0] < edge:
-        arm = anchor.point - held.point
-        anchor = LinkEnd(None, held.point + arm * (held.point[0] - edge) / tie.length)
-    ends = placed_ends(moving, anchor, held)
+        arm = anchor.point - block_end.point
+        anchor = LinkEnd(None, block_end.point + arm * (block_end.point[0] - edge) / tie.length)
+    ends = placed_ends(moving, anchor, block_end)
     follow = link(ax, moving, tie, ends)
     look: Look = {"marker": "s", "markersize": markersize, "color": tie.colour, "zorder": 4}
     (mark,) = ax.plot(*anchor.point[:, None], animated=anchor.block is not None, **look)

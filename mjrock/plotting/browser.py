@@ -85,8 +85,8 @@ def packed(rows: Array, step: float) -> Json:
     They are folded to numbers without sign, of four bytes each, of which the lowest bytes of all come first. The script
     of the page unpacks them.
     """
-    whole = np.rint(rows / step).astype(np.int64)
-    bent = np.diff(whole, n=2, axis=1, prepend=np.zeros((len(rows), 2), dtype=np.int64)).astype(np.int32)
+    steps = np.rint(rows / step).astype(np.int64)
+    bent = np.diff(steps, n=2, axis=1, prepend=np.zeros((len(rows), 2), dtype=np.int64)).astype(np.int32)
     folded = ((bent << 1) ^ (bent >> 31)).astype("<u4")
     planes = np.ascontiguousarray(folded).view(np.uint8).reshape(-1, 4).T
     data = base64.b64encode(zlib.compress(planes.tobytes(), 9)).decode()
@@ -112,8 +112,8 @@ class Page:
     def run(self) -> Json:
         """All that the script of the page needs."""
         room = CAMERA_ROOM * self.extent
-        beside = [one.rest + one.corners for i, one in enumerate(self.bodies) if one.fixed and not self.grounds[i]]
-        low, high = ends_of(np.concatenate([*self.reached[:, None], *beside]))
+        fixed = [one.rest + one.corners for i, one in enumerate(self.bodies) if one.fixed and not self.grounds[i]]
+        low, high = ends_of(np.concatenate([*self.reached[:, None], *fixed]))
         low, high = np.maximum(low, self.low - room), np.minimum(high, self.high + room)
         moves = [i for i, body in enumerate(self.bodies) if body.moves]
         return {
@@ -221,11 +221,11 @@ class Page:
     def _track(self) -> Iterator[Json]:
         """Lines of the accelerations of the ground, the displacements of supports, and the tilt of a table."""
         for name, motion in self.case.grounds.items():
-            moved = motion(self._instants(motion.times))
-            yield _line(f"acceleration of the ground {GROUND_DIRECTIONS[name]}", "m/s²", moved)
+            values = motion(self._instants(motion.times))
+            yield _line(f"acceleration of the ground {GROUND_DIRECTIONS[name]}", "m/s²", values)
         for support in self.case.supports:
-            moved = support.at(self._instants(support.t))
-            yield _line(f"displacement of {support.block}", "m", moved[:, int(np.abs(moved).max(axis=0).argmax())])
+            values = support.at(self._instants(support.t))
+            yield _line(f"displacement of {support.block}", "m", values[:, int(np.abs(values).max(axis=0).argmax())])
         if self.case.tilt is not None:
             t, angle = self.case.tilt
             yield _line("tilt of the table", "rad", np.interp(self._instants(t), t, angle))

@@ -235,10 +235,10 @@ def history(
 
 def reversed_ground(left: Response, right: Response) -> bool:
     """Whether the horizontal motion of the ground of one response is that of the other, reversed."""
-    one, other = (response.case for response in (left, right))
-    if one.motion is None or other.motion != one.motion.reversed():
+    first, second = (response.case for response in (left, right))
+    if first.motion is None or second.motion != first.motion.reversed():
         return False
-    return one.transverse == other.transverse and one.vertical == other.vertical
+    return first.transverse == second.transverse and first.vertical == second.vertical
 
 
 def required_labels(responses: Sequence[Response], labels: object) -> list[str] | None:

@@ -116,10 +116,10 @@ def _of_free(masonry: Masonry, pose: ArrayLike) -> Array:
     Raises:
         ValueError: as `pose_of_all`, and for fixed blocks that have moved.
     """
-    moved, free = pose_of_all(masonry, pose), list(masonry.free)
-    if (np.delete(moved, free, axis=0)[:, : 3 if masonry.in_space else None] != 0).any():
+    poses, free = pose_of_all(masonry, pose), list(masonry.free)
+    if (np.delete(poses, free, axis=0)[:, : 3 if masonry.in_space else None] != 0).any():
         raise ValueError("pose has fixed blocks that have moved; give the response whose supports move them")
-    return moved[free]
+    return poses[free]
 
 
 def _joints(ax: Axes, joints: Sequence[Joint]) -> None:

@@ -54,11 +54,11 @@ def png_of(shown: object) -> bytes | None:
     """
     title = re.sub(r" of <[^<>]*>", "", repr(shown)).strip("<>")
     draw = next(draw for kind, draw in PICTURES.items() if isinstance(shown, kind))
-    drawn = draw(shown, title)
-    if not isinstance(drawn, Axes):
-        return None if drawn is None else png(drawn)
-    figure = figure_of(drawn)
-    drawn.set_title(wrapped(title, figure.get_figwidth() - 0.6, 9), fontsize=9)
+    picture_drawn = draw(shown, title)
+    if not isinstance(picture_drawn, Axes):
+        return None if picture_drawn is None else png(picture_drawn)
+    figure = figure_of(picture_drawn)
+    picture_drawn.set_title(wrapped(title, figure.get_figwidth() - 0.6, 9), fontsize=9)
     return png(figure)
 
 
@@ -73,7 +73,7 @@ def _run(answer: Response, title: str) -> Figure:
     above.suptitle(wrapped(title, 6.0, 9), fontsize=9)
     if len(answer.case.rest_geometry.solids) <= MOST_BLOCKS:
         blocks(above.subplots(subplot_kw={"projection": "3d"} if answer.in_space else None), answer)
-    moved = displacement(below.subplots(), [answer])
+    ax = displacement(below.subplots(), [answer])
     if answer.fallen:
-        moved.set_title("a cross where a block falls", fontsize=9)
+        ax.set_title("a cross where a block falls", fontsize=9)
     return figure

@@ -38,9 +38,9 @@ def shaped(axes: int, needed: str) -> Check:
     """A check for an array of real numbers with a number of axes, of at least one number."""
 
     def checked(name: str, value: object) -> None:
-        given = require_reals(name, value, needed)
-        if given.ndim != axes or not given.size:
-            raise ValueError(f"{name} has the shape {given.shape}; {needed} is needed")
+        array = require_reals(name, value, needed)
+        if array.ndim != axes or not array.size:
+            raise ValueError(f"{name} has the shape {array.shape}; {needed} is needed")
 
     return checked
 
@@ -54,8 +54,8 @@ def equal_rows(**rows: ArrayLike) -> tuple[Array, ...]:
     checked = {name: require_reals(name, row, "a row of real numbers") for name, row in rows.items()}
     shapes = {name: row.shape for name, row in checked.items()}
     if len(set(shapes.values())) > 1 or any(row.ndim != 1 or not row.size for row in checked.values()):
-        given = ", ".join(f"{name} has the shape {shape}" for name, shape in shapes.items())
-        raise ValueError(f"{given}; rows of one length are needed")
+        shapes_text = ", ".join(f"{name} has the shape {shape}" for name, shape in shapes.items())
+        raise ValueError(f"{shapes_text}; rows of one length are needed")
     return tuple(checked.values())
 
 
@@ -69,9 +69,9 @@ def mapping(check: Check, least: int = 1) -> Check:
     def checked(name: str, value: object) -> None:
         if not isinstance(value, Mapping) or len(value) < least:
             raise TypeError(f'{name} = {shown(value)} is not a mapping like {{"name": value}}, of at least {least}')
-        for key, one in value.items():
+        for key, item in value.items():
             require_text(f"a name of {name}", key)
-            check(f"{name}[{key!r}]", one)
+            check(f"{name}[{key!r}]", item)
 
     return checked
 
@@ -82,8 +82,8 @@ def listed(check: Check) -> Check:
     def checked(name: str, value: object) -> None:
         if isinstance(value, str) or not isinstance(value, Sequence) or not len(value):
             raise TypeError(f"{name} = {shown(value)} is not a sequence of at least one")
-        for i, one in enumerate(value):
-            check(f"{name}[{i}]", one)
+        for i, item in enumerate(value):
+            check(f"{name}[{i}]", item)
 
     return checked
 
@@ -205,12 +205,12 @@ def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
     no higher than they need.
     """
     figure, axes = figure_of_panels(len(drawings), columns, (4.4, 3.4))
-    drawn = [draw(ax) for ax, (_, draw) in zip(axes.flat, drawings, strict=False)]
-    for ax, (title, _) in zip(drawn, drawings, strict=True):
+    axes_drawn = [draw(ax) for ax, (_, draw) in zip(axes.flat, drawings, strict=False)]
+    for ax, (title, _) in zip(axes_drawn, drawings, strict=True):
         ax.set_title(wrapped(title, figure.get_figwidth() / axes.shape[1] - 0.4, 10), fontsize=10)
-    to_scale = [ax for ax in drawn if ax.name != "3d" and ax.get_aspect() != "auto"]
+    to_scale = [ax for ax in axes_drawn if ax.name != "3d" and ax.get_aspect() != "auto"]
     one_scale(to_scale)
-    rows = [drawn[i : i + columns] for i in range(0, len(drawn), columns)]
+    rows = [axes_drawn[i : i + columns] for i in range(0, len(axes_drawn), columns)]
     if any(set(row) <= set(to_scale) for row in rows):
         fit_height(figure, rows)
     return figure
@@ -219,10 +219,10 @@ def panels(drawings: Sequence[tuple[str, Drawing]], columns: int = 2) -> Figure:
 def one_scale(axes: Sequence[Axes]) -> None:
     """Give Axes that are drawn to scale the same limits, unless these would be twice as wide as those of each."""
     for name in "xy":
-        own = np.reshape([getattr(ax, f"get_{name}lim")() for ax in axes], (-1, 2))
-        if len(own) and np.ptp(own) <= 2 * np.ptp(own, axis=1).max():
+        limits = np.reshape([getattr(ax, f"get_{name}lim")() for ax in axes], (-1, 2))
+        if len(limits) and np.ptp(limits) <= 2 * np.ptp(limits, axis=1).max():
             for ax in axes:
-                getattr(ax, f"set_{name}lim")(own.min(), own.max())
+                getattr(ax, f"set_{name}lim")(limits.min(), limits.max())
 
 
 def fit_height(figure: Figure, rows: Sequence[Sequence[Axes]]) -> None:

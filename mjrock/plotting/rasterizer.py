@@ -213,10 +213,10 @@ def _paint(
         surface, pixel = shown[row, column], colours[row // fine, column // fine]
         on_edge = False
         for k in range(edge):
-            above, beside = row + k, column + k
-            if 0 < above < high and piece[shown[above, column]] != piece[shown[above - 1, column]]:
+            next_row, next_column = row + k, column + k
+            if 0 < next_row < high and piece[shown[next_row, column]] != piece[shown[next_row - 1, column]]:
                 on_edge = True
-            if 0 < beside < wide and piece[shown[row, beside]] != piece[shown[row, beside - 1]]:
+            if 0 < next_column < wide and piece[shown[row, next_column]] != piece[shown[row, next_column - 1]]:
                 on_edge = True
         if on_edge:
             for i in range(3):

@@ -167,8 +167,8 @@ class Solids:
         size = float((high - low).max())
         if not tops or self.reached[0, 2] < max(tops) - DEEPEST_SUNK * size:
             return None
-        near, far = np.clip(self.reached, low - FARTHEST * size, high + FARTHEST * size)[:, :2]
-        low, high = np.minimum(near, low[:2]), np.maximum(far, high[:2])
+        lowest, highest = np.clip(self.reached, low - FARTHEST * size, high + FARTHEST * size)[:, :2]
+        low, high = np.minimum(lowest, low[:2]), np.maximum(highest, high[:2])
         return Ground(max(tops), 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)) + GROUND_ROOM * size)
 
     def extent(self) -> Array:
@@ -205,8 +205,8 @@ class Solids:
         low, high = self.extent()
         box = np.stack(np.meshgrid(*np.transpose([low, high]), indexing="ij"), axis=-1).reshape(-1, 3)
         frames = [] if self.limits is not None else self._some
-        drawn = [np.clip(self.corners(frame), low, high) for frame in frames] or [box]
-        return ends_of(np.array([ends_of(corners.reshape(-1, 3) @ self.across.T) for corners in drawn]))
+        corner_sets = [np.clip(self.corners(frame), low, high) for frame in frames] or [box]
+        return ends_of(np.array([ends_of(corners.reshape(-1, 3) @ self.across.T) for corners in corner_sets]))
 
     @property
     def extent_seen(self) -> Array:
@@ -287,11 +287,11 @@ def draw_solids(ax: Axes, bodies: Solids, box: BboxBase) -> Update:
     space = in_three(ax)
     _frame(space, bodies)
     _scale_bar(space, bodies)
-    drawn = Rendering(ax, bodies, box)
-    space.add_artist(drawn)
+    rendering = Rendering(ax, bodies, box)
+    space.add_artist(rendering)
 
     def update(frame: int) -> None:
-        drawn.frame = frame
+        rendering.frame = frame
 
     return update
 

@@ -112,10 +112,10 @@ def spectra(
     """
     T = np.asarray(periods, dtype=float)
     motions = motions.horizontal if isinstance(motions, RecordSet) else motions
-    found = np.array([response_spectrum(motion, T, damping).Sa for motion in motions]) / GRAVITY
-    for i, line in enumerate(found):
+    spectra_found = np.array([response_spectrum(motion, T, damping).Sa for motion in motions]) / GRAVITY
+    for i, line in enumerate(spectra_found):
         ax.plot(T, line, color="0.7", linewidth=0.7, label="records" if i == 0 else None)
-    ax.plot(T, found.mean(axis=0), color=BLUE, linewidth=2.0, label=f"mean of {len(found)}")
+    ax.plot(T, spectra_found.mean(axis=0), color=BLUE, linewidth=2.0, label=f"mean of {len(spectra_found)}")
     if target is not None:
         ax.plot(T, target(T, damping) / GRAVITY, color=ORANGE, linewidth=2.0, linestyle="--", label="target")
     ax.set(xlim=(T.min(), T.max()), ylim=(0, None), xlabel="period $T$ [s]")
@@ -138,9 +138,9 @@ def incremental(ax: Axes, intensity: ArrayLike, peaks: ArrayLike, solver: str, t
         )
     if top is None:
         top = max(1.2, 1.15 * float(values[np.isfinite(values)].max(initial=0.0)))
-    shown = np.minimum(values, top)
+    values_shown = np.minimum(values, top)
     mark = "" if levels.size > 1 else "o"  # a line of one point is none
-    ax.plot(levels, shown.T, color="0.75", linewidth=0.6, marker=mark)
+    ax.plot(levels, values_shown.T, color="0.75", linewidth=0.6, marker=mark)
     fractiles = np.minimum(np.percentile(values, [16, 50, 84], axis=0, method="nearest"), top)
     for line, style, label in zip(fractiles, (":", "-", "--"), ("16 %", "median", "84 %"), strict=True):
         ax.plot(levels, line, color=BLUE, linewidth=1.8, linestyle=style, marker=mark, label=label)
@@ -233,13 +233,13 @@ def overturning_map(ax: Axes, found: OverturningMap, wall: Block | None = None) 
 
 def _round_periods(omega: Array) -> list[float]:
     """Round periods with room for their labels on an axis of circular frequencies [s]."""
-    kept: list[float] = []
+    periods: list[float] = []
     for period in ROUND_PERIODS:
-        at = 2 * math.pi / period
-        apart = abs(2 * math.pi / kept[-1] - at) if kept else math.inf
-        if omega[0] <= at <= omega[-1] and apart >= 0.5 * NEAREST * (omega[-1] - omega[0]):
-            kept.append(period)
-    return kept
+        omega_there = 2 * math.pi / period
+        distance = abs(2 * math.pi / periods[-1] - omega_there) if periods else math.inf
+        if omega[0] <= omega_there <= omega[-1] and distance >= 0.5 * NEAREST * (omega[-1] - omega[0]):
+            periods.append(period)
+    return periods
 
 
 def _cell_edges(centres: Array) -> Array:
@@ -283,9 +283,9 @@ def fragility(
     name = f"{folded(style.get('label', solver))}: " if solver else ""
     label = f"{name}{fit.median:.2f} {unit}, {fit.dispersion:.2f}"
     top = max(2 * fit.median, fit.tried[1] if math.isfinite(fit.tried[1]) else 0.0)
-    points = found = np.empty(0)
+    points = shares_found = np.empty(0)
     if levels is not None and shares is not None:
-        points, found = equal_rows(levels=levels, shares=shares)
+        points, shares_found = equal_rows(levels=levels, shares=shares)
         top = float(points.max())
     x = np.linspace(0.02 * top, top, 300)
     low, high = fit.band(x)
@@ -294,7 +294,7 @@ def fragility(
     curve = None if points.size else label
     ax.plot(x, fit.probability(x), color=colour, linestyle=style.get("linestyle", "-"), linewidth=1.8, label=curve)
     if points.size:
-        ax.plot(points, found, marker=marker, linestyle="", color=colour, markersize=5, label=label)
+        ax.plot(points, shares_found, marker=marker, linestyle="", color=colour, markersize=5, label=label)
     ax.set_xlim(0, max(1.02 * top, right))
     ax.set(ylim=(-0.02, 1.02), xlabel=f"peak ground acceleration [{unit}]", ylabel="share of walls overturned [-]")
     return ax

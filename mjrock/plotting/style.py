@@ -103,11 +103,11 @@ def require_labels(labels: object, responses: Sequence[Response]) -> list[str]:
 
 def plain_names(names: Iterable[str]) -> dict[str, str]:
     """Names of effects as a picture has them: "tie" for `tie_0` where it is the only tie."""
-    every = list(names)
-    kinds = Counter(name.rpartition("_")[0] for name in every)
+    all_names = list(names)
+    kinds = Counter(name.rpartition("_")[0] for name in all_names)
     return {
         name: kind.replace("_", " ") if number == "0" and kind and kinds[kind] == 1 else name
-        for name, (kind, _, number) in zip(every, (name.rpartition("_") for name in every), strict=True)
+        for name, (kind, _, number) in zip(all_names, (name.rpartition("_") for name in all_names), strict=True)
     }
 
 
@@ -205,13 +205,13 @@ def save(figure: Figure | Axes, path: str | Path) -> Path:
         ValueError: for a suffix that Matplotlib does not write.
     """
     require_kind("figure", figure, Figure, Axes)
-    drawn = figure_of(figure) if isinstance(figure, Axes) else figure
+    figure_saved = figure_of(figure) if isinstance(figure, Axes) else figure
     path = require_path("path", path)
     if path.name not in ("", "..") and not path.suffix:
         path = path.with_suffix(".png")
-    formats = drawn.canvas.get_supported_filetypes()
+    formats = figure_saved.canvas.get_supported_filetypes()
     if path.suffix[1:].lower() not in formats:
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .{', .'.join(sorted(formats))}")
     with replacing(path) as partial:
-        drawn.savefig(partial, dpi=FINE, metadata={"Software": None} if path.suffix == ".png" else None)
+        figure_saved.savefig(partial, dpi=FINE, metadata={"Software": None} if path.suffix == ".png" else None)
     return path

@@ -120,8 +120,8 @@ def _force(ax: Axes, case: Case, effect: Effect, force: Point, moving: BodyMotio
     text = ax.annotate(f"{(force[0] - force[2]) / 1e3:g} kN", (0, 0), shift, textcoords="offset points", **look)
 
     def update(frame: int) -> None:
-        at = places[frame]
-        tail, tip = (at - along, at) if loads else (at, at + along)
+        place = places[frame]
+        tail, tip = (place - along, place) if loads else (place, place + along)
         arrow.set_positions(tuple(tail), tuple(tip))
         text.xy = tuple(tail if loads else tip)
 
@@ -267,7 +267,7 @@ def _notes(ax: Axes, notes: Sequence[Note], column: float, ends: tuple[float, fl
 
 def _effects(case: Case, *, arguments: bool) -> list[Note]:
     """The place of each effect in the section, and a note on it."""
-    named, made, plain = dict[Effect, list[str]](), [], plain_names(case.named)
+    named, notes, plain = dict[Effect, list[str]](), [], plain_names(case.named)
     _, breaking = case.limits_of_ties(np.linspace(0.0, case.overturning_rotation, POINTS))
     for name, effect in case.named.items():
         if not effect.mass_added:
@@ -278,15 +278,15 @@ def _effects(case: Case, *, arguments: bool) -> list[Note]:
         label = ", ".join(plain[name] for name in names) or item.label
         note = f"{type(item).__name__}({item.arguments})" if arguments else f"{label}: {item.description}"
         if breaks := [breaking[name] for name in names if name in breaking and not arguments]:
-            moved = float(case.wall.pose(np.array([min(breaks)]))[0, 0])
-            note += f"\nbreaks where the centroid has moved by {1e3 * moved:.0f} mm"
+            displacement = float(case.wall.pose(np.array([min(breaks)]))[0, 0])
+            note += f"\nbreaks where the centroid has moved by {1e3 * displacement:.0f} mm"
         place = (case.block.inner_face(effect.height) if effect.on_face else effect.offset, effect.height)
         if len(corners := effect.outline):
             place = (float(corners[:, 0].mean()), float(corners[:, 1].mean()))
-        made.append((place, note))
+        notes.append((place, note))
     if arguments and case.stop_top is not None:
-        made.append(((case.block.inner_face(case.stop_top) - 0.05, case.stop_top), "SideStop(top)"))
-    return made
+        notes.append(((case.block.inner_face(case.stop_top) - 0.05, case.stop_top), "SideStop(top)"))
+    return notes
 
 
 def elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
@@ -316,10 +316,10 @@ def elevation(ax: Axes, case: Case, ends: tuple[float, float]) -> None:
 
 def _sizes(case: Case) -> list[str]:
     """The size of each kind of opening, and how many there are."""
-    made = []
+    lines = []
     for opening, count in Counter(replace(opening, at=None) for opening in case.block.openings).items():
         number = f"{count} openings" if count > 1 else "opening"
         sill = f"sill at {opening.sill:.3g} m" if opening.sill else "from the ground"
         kind = "round " if opening.round else ""
-        made.append(f"{kind}{number} {opening.width:.3g} x {opening.height:.3g} m, {sill}")
-    return made
+        lines.append(f"{kind}{number} {opening.width:.3g} x {opening.height:.3g} m, {sill}")
+    return lines

@@ -92,13 +92,13 @@ class WallContent:
 
     def limitations(self, runs: Sequence[Run], words: Words) -> list[str]:
         """What these results do not cover."""
-        shaken = [run for run in runs if run.response.case.motion is not None]
-        records, reversed_records = {run.record for run in shaken}, {run.record for run in shaken if run.is_reversed}
+        driven = [run for run in runs if run.response.case.motion is not None]
+        records, reversed_records = {run.record for run in driven}, {run.record for run in driven if run.is_reversed}
         applies = {
             "limit_rigid": True,
             "limit_polarity": self.case.one_sided and records > reversed_records,
             "limit_one_record": len(records) == 1,
-            "limit_release": bool(runs) and not shaken,
+            "limit_release": bool(runs) and not driven,
             "limit_theory": {run.response.solver for run in runs} == {"analytical"},
         }
         sentences = [words(key) for key, holds in applies.items() if holds]
@@ -106,11 +106,11 @@ class WallContent:
         if moving_at_end:
             sentences.append(words("limit_still_moves", count=len(moving_at_end), of=len(runs)))
         for run in runs:
-            for tie, drawn in run.response.plastic.items():
+            for tie, plastic in run.response.plastic.items():
                 effect = run.response.case.links[tie]
-                if overdrawn(effect, drawn):
-                    name, d = effect_name(tie, words), words.quantity(drawn.elongation, "m", FOUND)
-                    share = words.share(round(100 * drawn.elongation / effect.span) / 100)
+                if overdrawn(effect, plastic):
+                    name, d = effect_name(tie, words), words.quantity(plastic.elongation, "m", FOUND)
+                    share = words.share(round(100 * plastic.elongation / effect.span) / 100)
                     sentences.append(words("limit_overdrawn", run=run.label, tie=name, d=d, share=share))
         return sentences
 
@@ -214,9 +214,9 @@ class MasonryContent:
         columns = min(2, len(panels))
         rows = -(-len(panels) // columns)
         figure = Figure(figsize=(PICTURE_WIDTH, rows * TALLEST_BLOCKS), layout="constrained")
-        for i, (shown, title) in enumerate(panels):
+        for i, (panel, title) in enumerate(panels):
             ax = figure.add_subplot(rows, columns, i + 1, projection="3d" if self.case.in_space else None)
-            mechanism(ax, shown) if isinstance(shown, Collapse) else blocks(ax, shown)
+            mechanism(ax, panel) if isinstance(panel, Collapse) else blocks(ax, panel)
             ax.set_title(fill(title, LONGEST_TITLE_LINE), fontsize=LEAST_TYPE)
             small(ax)
         if not self.case.in_space:

@@ -204,13 +204,13 @@ def block_inputs(block: Block, words: Words) -> list[Input]:
         rows.append(Input("profile", words("in_profile"), "; ".join(steps)))
         rows.append(Input("plumb", words("in_plumb"), words(f"plumb_{block.plumb}")))
     if block.gable is not None:
-        given = {"height": words.quantity(block.gable.height, "m"), "top": words.quantity(block.gable.top, "m")}
+        texts = {"height": words.quantity(block.gable.height, "m"), "top": words.quantity(block.gable.top, "m")}
         kind = "gable" if block.gable.top else "gable_pointed"
-        rows.append(Input("gable", words("in_gable"), words(kind, **given)))
+        rows.append(Input("gable", words("in_gable"), words(kind, **texts)))
     for opening, count in Counter(block.openings).items():
         name = "round_opening" if opening.round else "opening"
-        given = {key: words.number(getattr(opening, key)) for key in ("width", "height", "sill")}
-        parts = [words("opening", **given)]
+        texts = {key: words.number(getattr(opening, key)) for key in ("width", "height", "sill")}
+        parts = [words("opening", **texts)]
         parts += [words("opening_at", at=words.quantity(opening.at, "m"))] if opening.at is not None else []
         parts += [words("field_number", value=count)] if count > 1 else []
         rows.append(Input(name, words(f"in_{name}"), ", ".join(parts)))

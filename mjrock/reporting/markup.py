@@ -51,8 +51,8 @@ def escaped(text: str) -> Markup:
 
 def element(tag: str, *parts: str, **attributes: str) -> Markup:
     """An element with its parts, which are escaped unless they are markup; `kind` is its class."""
-    given = "".join(f' {name.replace("kind", "class")}="{html.escape(value)}"' for name, value in attributes.items())
-    return Markup(f"<{tag}{given}>{''.join(escaped(part) for part in parts)}</{tag}>")
+    pairs = "".join(f' {name.replace("kind", "class")}="{html.escape(value)}"' for name, value in attributes.items())
+    return Markup(f"<{tag}{pairs}>{''.join(escaped(part) for part in parts)}</{tag}>")
 
 
 def listed(texts: Sequence[str]) -> Markup:
@@ -71,17 +71,17 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence
     """
 
     def line(tag: str, cells: Sequence[str]) -> Markup:
-        made = []
+        cell_elements = []
         for i, cell in enumerate(cells):
             ready = isinstance(cell, Markup) and cell.startswith("<td")
-            made.append(cell if ready else element(tag, cell, **({"kind": "right"} if i in right else {})))
-        return element("tr", *made)
+            cell_elements.append(cell if ready else element(tag, cell, **({"kind": "right"} if i in right else {})))
+        return element("tr", *cell_elements)
 
     head = [element("thead", line("th", columns))] if columns else []
     body = element("tbody", *(line("td", row) for row in rows))
     kinds = " ".join(filter(None, (kind, "brief" * (len(rows) <= MOST_UNBROKEN_ROWS))))
-    whole = element("table", *head, body, **({"kind": kinds} if kinds else {}))
-    return element("div", whole, kind="wide")
+    table_element = element("table", *head, body, **({"kind": kinds} if kinds else {}))
+    return element("div", table_element, kind="wide")
 
 
 def formula(text: str) -> Markup:
@@ -92,13 +92,13 @@ def formula(text: str) -> Markup:
 
 def _row(tokens: list[str]) -> list[Markup]:
     """Parts of a formula up to the end of its group."""
-    made = []
+    parts = []
     while tokens and tokens[0] != "}":
         part = _item(tokens)
         while tokens and tokens[0] in TAGS:
             part = element(TAGS[tokens.pop(0)], part, _item(tokens))
-        made.append(part)
-    return made
+        parts.append(part)
+    return parts
 
 
 def _item(tokens: list[str]) -> Markup:
@@ -120,8 +120,8 @@ def picture(figure: Figure, caption: str, words: Words, *, of_user: bool = False
 
 def framed(image: str, caption: str) -> Markup:
     """An image of `image_of` inside the page."""
-    shown = Markup(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{image}">')
-    return element("figure", shown, element("figcaption", caption))
+    image_element = Markup(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{image}">')
+    return element("figure", image_element, element("figcaption", caption))
 
 
 def image_of(figure: Figure, words: Words, *, of_user: bool = False) -> str:

@@ -112,10 +112,10 @@ def is_of(case: AnyCase, subject: Subject) -> bool:
 
 def _part_of(subject: Subject, parts: list[Part]) -> Part:
     """The part of a subject, which is added where there is none."""
-    found = next((part for part in parts if part.is_of(subject)), None)
-    if found is None:
-        parts.append(found := Part(body_of(subject)))
-    return found
+    known_part = next((part for part in parts if part.is_of(subject)), None)
+    if known_part is None:
+        parts.append(known_part := Part(body_of(subject)))
+    return known_part
 
 
 def _drawn_features(subject: Subject) -> tuple[object, ...]:

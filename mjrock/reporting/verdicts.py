@@ -97,11 +97,11 @@ def required_checks(checks: object, default_name: str) -> list[Mechanism]:
     if checks is None:
         return []
     mechanisms = []
-    for name, given in (checks if isinstance(checks, Mapping) else {default_name: checks}).items():
-        of_mechanism = [given] if isinstance(given, Check | StaticAnswer) else given
+    for name, checks_of_one in (checks if isinstance(checks, Mapping) else {default_name: checks}).items():
+        of_mechanism = [checks_of_one] if isinstance(checks_of_one, Check | StaticAnswer) else checks_of_one
         if not isinstance(of_mechanism, Sequence) or isinstance(of_mechanism, str):
             raise TypeError(
-                f"checks = {shown(given)} is no MechanismCheck, DynamicCheck or LoadCheck, nor several of them"
+                f"checks = {shown(checks_of_one)} is no MechanismCheck, DynamicCheck or LoadCheck, nor several of them"
             )
         if not of_mechanism:
             raise ValueError(f"checks[{name!r}] is empty; at least one check is needed")
@@ -266,15 +266,15 @@ def condition_cells(verdict: Verdict, words: Words) -> list[str]:
         return words("fell") if fell else words.quantity(value, verdict.unit, FOUND)
 
     numbers = amount(verdict.demand), amount(verdict.capacity), words.ratio(verdict.ratio)
-    held = words("holds" if verdict.holds else "fails")
-    return [words(verdict.what), verdict.limit_state or DASH, *numbers, held, verdict.clause or DASH]
+    word = words("holds" if verdict.holds else "fails")
+    return [words(verdict.what), verdict.limit_state or DASH, *numbers, word, verdict.clause or DASH]
 
 
 def _marked_condition_cells(verdict: Verdict, words: Words) -> list[str]:
     """The same with what they look like."""
-    what, state, *numbers, held, clause = condition_cells(verdict, words)
+    what, state, *numbers, word, clause = condition_cells(verdict, words)
     kind = "holds" if verdict.holds else "fails"
-    return [what, state, *(element("td", one, kind="right") for one in numbers), element("td", held, kind=kind), clause]
+    return [what, state, *(element("td", one, kind="right") for one in numbers), element("td", word, kind=kind), clause]
 
 
 def design_rows(design: Design, words: Words) -> list[list[str]]:
@@ -315,13 +315,13 @@ def condition_text(found: Condition, words: Words) -> str:
 def design_sentence(design: Design, words: Words) -> str:
     """The result of a design in one sentence."""
     count, method = len(design.trials), design.trials[0].method
-    every = words("every_method", method=words(f"method_{method}")) if method else words("every_condition")
+    every_condition = words("every_method", method=words(f"method_{method}")) if method else words("every_condition")
     if len(design.trials) > 1 and design.trials[0].holds:
         holding_count = sum(trial.holds for trial in design.trials)
         least = {"name": words.marked(design.least.label), "ratio": words.ratio(design.least.ratio)}
         return words("design_held", held=holding_count, count=count, **least)
     if design.chosen is not None:
-        return words("design_chosen", name=words.marked(design.chosen.label), count=count, every=every)
+        return words("design_chosen", name=words.marked(design.chosen.label), count=count, every=every_condition)
     nearest = design.nearest
     return words("design_none", name=words.marked(nearest.label), count=count, ratio=words.ratio(nearest.ratio))
 

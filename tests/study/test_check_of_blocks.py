@@ -186,7 +186,7 @@ def test_runs_are_judged_by_the_block_that_moves():
     t = np.arange(0, 1.0, 0.01)
     pulse = mr.GroundMotion(-4.0 * np.sin(2 * math.pi * t / 0.5) * (t < 0.5), 0.01)
     runs = [mr.solve_explicit(mr.MasonryCase(masonry, 1.2, motion=motion)) for motion in pulse.polarities]
-    with pytest.warns(mr.Implausible, match="asks for more"):
+    with pytest.warns(mr.Implausible, match="requires more"):
         check = mr.dynamic_check(runs, curve=curve, natural=True)
     assert check.d_0 == pytest.approx(0.225, rel=1e-6)
     rows = masonry.free.index(masonry.names.index("statue"))

@@ -145,9 +145,9 @@ def test_masonry_of_one_block_is_checked_as_a_wall():
     """Its push gives half the thickness as d_0, and the maxima are those of the centroid on the same contacts."""
     asked = shaken(1, 4.0)
     runs, walls = map(mr.solve_explicit, asked), (mr.solve_explicit(case, CONTACTS) for case in cases(1, 4.0))
-    with pytest.warns(mr.Implausible, match="asks for more"):
+    with pytest.warns(mr.Implausible, match="requires more"):
         found = mr.dynamic_check([*runs], curve=curve_of(1))
-    with pytest.warns(mr.Implausible, match="asks for more"):
+    with pytest.warns(mr.Implausible, match="requires more"):
         wall = mr.dynamic_check([*walls])
     assert found.d_0 == pytest.approx(0.3, rel=1e-3)
     assert [run.d for run in found.runs] == pytest.approx([run.d for run in wall.runs], rel=0.01)
@@ -157,7 +157,7 @@ def test_masonry_of_one_block_is_checked_as_a_wall():
 @pytest.mark.slow
 def test_masonry_from_which_a_block_falls_is_beyond_d_0():
     asked = shaken(1, 15.0)
-    with pytest.warns(mr.Implausible, match="asks for more"):
+    with pytest.warns(mr.Implausible, match="requires more"):
         found = mr.dynamic_check([mr.solve_explicit(case) for case in asked], curve=curve_of(1))
     assert math.isinf(found.mean)
     assert not found.holds
@@ -169,7 +169,7 @@ def test_mirrored_masonry_is_pushed_and_shaken_the_other_way():
     found = []
     for way in (1, -1):
         runs = [mr.solve_explicit(case) for case in shaken(1, 3.0, way)]
-        with pytest.warns(mr.Implausible, match="asks for more"):
+        with pytest.warns(mr.Implausible, match="requires more"):
             found.append(mr.dynamic_check(runs, curve=curve_of(way)))
     assert found[1].d_0 == pytest.approx(found[0].d_0, rel=1e-6)
     assert [run.d for run in found[1].runs] == pytest.approx([run.d for run in found[0].runs], rel=1e-3)

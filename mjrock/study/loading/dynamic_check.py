@@ -273,7 +273,7 @@ def dynamic_check(
     moved = {} if curve is None else {"moving": centroid.blocks, "way": tuple(centroid.direction.tolist())}
     check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0], **moved)
     if check.lacking:
-        warn_of(f"{rule.clause or code.name} asks for more: {'; '.join(check.lacking)}", Implausible)
+        warn_of(f"{rule.clause or code.name} requires more: {'; '.join(check.lacking)}", Implausible)
     return check
 
 
