@@ -1,9 +1,9 @@
-"""Linear algebra of structures: stability and frequencies of bodies on springs, some of whose motions are held.
+"""Linear algebra of structures: stability and frequencies of bodies on springs, some of whose motions are constrained.
 
 Matrices are sparse. Structures of few unknowns are solved in full, by null spaces and eigenvalues, which need no
 care. Larger ones are factorised as they are: a block has three unknowns and meets a handful of others.
 
-Motions are held by rows `grip` of rates that are zero. They may depend on one another.
+Rows `constraints` give rates that are zero. They may depend on one another.
 """
 
 from __future__ import annotations
@@ -146,32 +146,33 @@ def sprung(rates: csr_array, springs: Array) -> csr_array:
 
 
 class _Balance:
-    """The factors of a large matrix near that of a balance, regular whatever is loose or held twice."""
+    """The factors of a large matrix near that of a balance, regular whatever is loose or constrained twice."""
 
-    def __init__(self, stiffness: csr_array, grip: csr_array, loose: float) -> None:
+    def __init__(self, stiffness: csr_array, constraints: csr_array, loose: float) -> None:
         stiffest = float(stiffness.diagonal().max())
-        self.stiffness, self.grip, self.back = stiffness, grip, csr_array(grip.T)
-        yielding = diags_array(-YIELDING / stiffest * grip.power(2).sum(axis=1))
+        self.stiffness, self.constraints, self.transpose = stiffness, constraints, csr_array(constraints.T)
+        yielding = diags_array(-YIELDING / stiffest * constraints.power(2).sum(axis=1))
         added = diags_array(np.full(stiffness.shape[0], loose * stiffest))
-        near = block_array([[stiffness + added, self.back], [grip, yielding]], format="csc")
+        near = block_array([[stiffness + added, self.transpose], [constraints, yielding]], format="csc")
         self.factors = _factors(near)
 
     def __call__(self, force: Array) -> tuple[Array, Array]:
-        """The motion u in which stiffness u + grip^T f = force and grip u = 0, and the forces f of what holds.
+        """The motion u with stiffness u + constraints^T f = force and constraints u = 0, and the forces f.
 
         The residual of a solution of the near matrix is balanced in turn.
         """
-        n, held = self.grip.shape[1], self.grip.shape[0]
-        residual, error, scale = np.append(force, np.zeros(held)), np.inf, float(np.abs(force).max())
-        motion, holding = np.zeros(n), np.zeros(held)
+        count, n = self.constraints.shape
+        residual, error, scale = np.append(force, np.zeros(count)), np.inf, float(np.abs(force).max())
+        motion, reaction = np.zeros(n), np.zeros(count)
         for _ in range(REFINEMENTS):
             correction = self.factors.solve(residual)
-            motion, holding = motion + correction[:n], holding + correction[n:]
-            residual = np.append(force - self.stiffness @ motion - self.back @ holding, -(self.grip @ motion))
+            motion, reaction = motion + correction[:n], reaction + correction[n:]
+            unbalanced = force - self.stiffness @ motion - self.transpose @ reaction
+            residual = np.append(unbalanced, -(self.constraints @ motion))
             last, error = error, float(np.abs(residual).max())
             if error < REFINED * scale or error > 0.5 * last:
                 break
-        return motion, holding
+        return motion, reaction
 
 
 def _factors(matrix: csc_array) -> scipy.sparse.linalg.SuperLU:
@@ -251,25 +252,25 @@ def highest_square(stiffness: csr_array, masses: Array) -> float:
     )
 
 
-def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: float) -> float:
-    """The lowest square of a natural frequency with some motions held [rad2/s2], zero if there is none.
+def lowest_square(stiffness: csr_array, masses: Array, constraints: csr_array, rigid: float) -> float:
+    """The lowest square of a natural frequency with some motions constrained [rad2/s2], zero if there is none.
 
     Args:
         stiffness: of the springs, positive semi-definite.
         masses: of the unknowns.
-        grip: what is held.
+        constraints: rates of what is fixed, for unit velocities.
         rigid: square up to which a motion is one that nothing resists, over the highest [-].
     """
     n, root = len(masses), 1 / np.sqrt(masses)
     stiffness = times_both(root, stiffness)
     if n <= SOLVED_IN_FULL:
-        return _lowest_in_full(stiffness, grip.toarray() * root, rigid)
-    grip = csr_array(grip @ diags_array(root))
+        return _lowest_in_full(stiffness, constraints.toarray() * root, rigid)
+    constraints = csr_array(constraints @ diags_array(root))
     # a bound is enough for the shift, and takes no search
     highest = highest_square(stiffness, np.ones(n)) if n <= MANY_UNKNOWNS else float(abs(stiffness).sum(axis=1).max())
     if highest == 0:
         return 0.0
-    balance = _Balance(csr_array(stiffness + SHIFT * highest * eye_array(n)), grip, 0.0)
+    balance = _Balance(csr_array(stiffness + SHIFT * highest * eye_array(n)), constraints, 0.0)
     inverse = scipy.sparse.linalg.LinearOperator((n, n), lambda x: balance(x)[0], dtype=float)
     start, count = inverse @ np.random.default_rng(0).random(n), 1
     while count < n // 2:
@@ -282,12 +283,12 @@ def lowest_square(stiffness: csr_array, masses: Array, grip: csr_array, rigid: f
         if resisted.size:
             return float(resisted[0])
         count *= 4
-    return _lowest_in_full(stiffness, grip.toarray(), rigid)
+    return _lowest_in_full(stiffness, constraints.toarray(), rigid)
 
 
-def _lowest_in_full(stiffness: csr_array, grip: Array, rigid: float) -> float:
+def _lowest_in_full(stiffness: csr_array, constraints: Array, rigid: float) -> float:
     """As `lowest_square`, of unit masses, by all squares of frequencies."""
-    free = scipy.linalg.null_space(grip, rcond=DEPENDENT)
+    free = scipy.linalg.null_space(constraints, rcond=DEPENDENT)
     squares = np.linalg.eigvalsh(free.T @ (stiffness @ free)) if free.shape[1] else np.zeros(0)
     squares = squares[squares > rigid * max(squares, default=0.0)]
     return float(squares[0]) if squares.size else 0.0

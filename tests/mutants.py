@@ -240,13 +240,13 @@ EQUIVALENT = {
     **{
         f"rest.py: {line}": "the search ends at the same pose"
         for line in (
-            "BEGINNING = LOOSE, 2.0, SLIPPING, np.inf",
+            "share: float = 2.0",
             "POSES = 600",
             "SOFT_STARTS = 200.0, 0.01, 0.1",
             "SOFT_STARTS = 100.0, 0.02, 0.1",
             "SOFT_STARTS = 100.0, 0.01, 0.2",
-            "loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.25 * share, least)",
-            "loose, share, least = 2 * loose, 1.0, min(RAISED / least, 1.0)",
+            "loose, share = max(0.5 * self.loose, LEAST_LOOSE), max(0.25 * self.share, self.least_share)",
+            "return LentStiffness(2 * self.loose, 1.0, min(RAISED / self.least_share, 1.0), missing)",
             "LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 2e-12, 1.0",
             "LOOSE, LEAST_LOOSE, MOST_LOOSE = 2e-09, 1e-12, 1.0",
             "LOOSE, LEAST_LOOSE, MOST_LOOSE = 1e-9, 1e-12, 2.0",
@@ -261,7 +261,7 @@ EQUIVALENT = {
     "else (1, 0.0)": "where no place presses, none has an overlap that a share is taken of",
     "constants.py: AS_NEAR = 1 + 2e-06": "far above rounding, and far below how places differ",
     "contact.py: TOUCH_PASSES = 6": "more passes take time only",
-    "contact.py: line.pressed = push - sprung if meet.gap <= 0 or push < 0 else 0.0": (
+    "contact.py: line.dashpot_force = push - spring_force if meet.gap <= 0 or push < 0 else 0.0": (
         "at a gap of zero nothing presses"
     ),
     "faces.py: GAP_OF_OPEN = 2.0": "at no gap above zero is anything left of a line",

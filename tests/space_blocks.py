@@ -47,7 +47,8 @@ def followed(system, duration, h, every):
     system, books = copied(system), Books.empty(system, 1)
     samples = Samples.room(last // every + 1, system, books)
     alone = threads_of(system.bodies, system.lines, 1)[0][0]
-    advance(system, books, samples, Clock(0, h, every, 0, last + 1, last, math.inf, 0.0, (0.0, 0.0, 0.0)), alone)
+    clock = Clock(h=h, steps_per_sample=every, stop=last + 1, last=last, ground_acceleration_before=(0.0, 0.0, 0.0))
+    advance(system, books, samples, clock, alone)
     return samples.chosen(slice(-1)), system
 
 

@@ -87,10 +87,10 @@ def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: objec
     if not table.values.keys() & {"restitution", "contacts", "records", "run"}:
         return Shaking(solver=usual_solver(wall))
     if "restitution" in table.values or wall is not None:
-        values["e"] = _of_wall(reader, table, "restitution", makers_of(Restitution), wall)
+        values["e"] = _from_wall_table(reader, table, "restitution", makers_of(Restitution), wall)
     if "contacts" in table.values:
         arguments = {} if values.get("e") is None else {"e": values["e"]}
-        values["contacts"] = _of_wall(reader, table, "contacts", makers_of(Contacts), wall, arguments)
+        values["contacts"] = _from_wall_table(reader, table, "contacts", makers_of(Contacts), wall, arguments)
     if "run" in table.values:
         values |= _run(reader, reader.required_table(table, "run"), wall)
     if "dynamic_check" in table.values:
@@ -100,7 +100,7 @@ def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: objec
     return Shaking(**values)
 
 
-def _of_wall(
+def _from_wall_table(
     reader: Reader, table: Table, name: str, makers: Makers, wall: Block | None, given: Mapping[str, Any] | None = None
 ) -> Any:
     """Restitution or contacts of a wall; the usual ones where the file has no table of them."""

@@ -378,14 +378,14 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
     option, pose = pair.model.opt, pose.along(request.normal)
     request = request.by_point(pair, pose)
     h = require_within("timestep", option.timestep if request.timestep is None else request.timestep, 1e-12, 1e3, "s")
-    grip, mixed = FrictionParameters.from_pair(pair, request.friction), PairParameters.from_pair(pair)
+    friction, mixed = FrictionParameters.from_pair(pair, request.friction), PairParameters.from_pair(pair)
     met = meeting_of_geoms(
         pair,
         pose,
         contacts=request.contacts,
         at=request.at,
         alone=request.mass is not None,
-        law=PointLaw(grip.sliding, request.k, LONG_STEP / h if request.k is None else None),
+        law=PointLaw(friction.sliding, request.k, LONG_STEP / h if request.k is None else None),
     )
     if request.mass is None and not met.effective.mass < math.inf:
         raise ValueError(
@@ -413,7 +413,7 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
         contacts=met.points,
         solref=(stiffness, damping),
         solimp=(d, d, 0.001, 0.5, 2.0),
-        **grip.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
+        **friction.holding(min(math.sqrt(k / share), 1 / h), d, share, inertia)._asdict(),
         adhesion=mixed.adhesion,
         gap=mixed.gap,
         speed=request.speed,
@@ -421,8 +421,8 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
         pose=pose.label,
         load=pose.load(pair, met.points, request.contacts) if request.load is None else request.load / met.points,
     )
-    remarks = [*unused(request.friction, grip), *shape_caveats(pair, pose), *turn_caveats(pair, pose, k)]
-    remarks += _remarks(pair, pose, request, met, PointLaw(grip.sliding, k), c)
+    remarks = [*unused(request.friction, friction), *shape_caveats(pair, pose), *turn_caveats(pair, pose, k)]
+    remarks += _remarks(pair, pose, request, met, PointLaw(friction.sliding, k), c)
     if request.restitution is not None:
         remarks += weight_caveats(contact)
     remarks += blow_caveats(contact, pair)

@@ -123,10 +123,10 @@ class LandingTrial:
 
 def state_alike(model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
     """Data of a copy of a model in the pose of others, with their controls."""
-    made = mujoco.MjData(model)
-    made.qpos[:], made.mocap_pos[:], made.mocap_quat[:] = data.qpos, data.mocap_pos, data.mocap_quat
-    made.ctrl[:], made.act[:] = data.ctrl, data.act
-    return made
+    copied = mujoco.MjData(model)
+    copied.qpos[:], copied.mocap_pos[:], copied.mocap_quat[:] = data.qpos, data.mocap_pos, data.mocap_quat
+    copied.ctrl[:], copied.act[:] = data.ctrl, data.act
+    return copied
 
 
 class Landing(NamedTuple):
@@ -222,28 +222,28 @@ def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset
     stands, and what actuators give at the controls of the pose presses. No other joint is held: pads, trailers and
     rockers on joints that turn freely find their balance.
     """
-    held = copy.copy(model)
-    held.opt.enableflags = held.opt.enableflags & ~enable_bits("SPECULATIVE") | enable_bits("OVERRIDE")
-    held.opt.o_solref[:], held.opt.o_solimp[:3], held.opt.o_margin = 0, (0.9999, 0.9999, 0.001), TOUCHING_AT_REST
-    held.opt.solver, held.opt.cone = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtCone.mjCONE_ELLIPTIC
-    held.opt.iterations, held.opt.ls_iterations, held.opt.tolerance = 100, 50, 0.0
-    held.opt.impratio = 1e-4  # friction carries what the normal forces cannot
+    rigid = copy.copy(model)
+    rigid.opt.enableflags = rigid.opt.enableflags & ~enable_bits("SPECULATIVE") | enable_bits("OVERRIDE")
+    rigid.opt.o_solref[:], rigid.opt.o_solimp[:3], rigid.opt.o_margin = 0, (0.9999, 0.9999, 0.001), TOUCHING_AT_REST
+    rigid.opt.solver, rigid.opt.cone = mujoco.mjtSolver.mjSOL_NEWTON, mujoco.mjtCone.mjCONE_ELLIPTIC
+    rigid.opt.iterations, rigid.opt.ls_iterations, rigid.opt.tolerance = 100, 50, 0.0
+    rigid.opt.impratio = 1e-4  # friction carries what the normal forces cannot
     for name in RIGID_AT_REST:
-        getattr(held, name.format("solref"))[:] = 0
-        getattr(held, name.format("solimp"))[..., :3] = 0.9999, 0.9999, 0.001
-    for margin in (held.jnt_margin, held.tendon_margin):
+        getattr(rigid, name.format("solref"))[:] = 0
+        getattr(rigid, name.format("solimp"))[..., :3] = 0.9999, 0.9999, 0.001
+    for margin in (rigid.jnt_margin, rigid.tendon_margin):
         margin[:] = np.maximum(margin, TOUCHING_AT_REST)
     for name in ("body_invweight0", "dof_invweight0", "tendon_invweight0"):
-        getattr(held, name)[:] *= 1e-6  # of the regularisation
-    held.dof_armature[moved_or_sprung(model, data)] += 1e6 * float(held.body_mass.sum())
-    state = state_alike(held, data)
+        getattr(rigid, name)[:] *= 1e-6  # of the regularisation
+    rigid.dof_armature[moved_or_sprung(model, data)] += 1e6 * float(rigid.body_mass.sum())
+    state = state_alike(rigid, data)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        mujoco.mj_forward(held, state)
+        mujoco.mj_forward(rigid, state)
     found: dict[frozenset[int], list[float]] = {}
     force = np.zeros(6)
     for i, geoms in enumerate(state.contact.geom.tolist()):
-        mujoco.mj_contactForce(held, state, i, force)
+        mujoco.mj_contactForce(rigid, state, i, force)
         found.setdefault(frozenset(geoms), []).append(float(force[0]))
     return found
 
@@ -449,8 +449,8 @@ class BodyPair:
         bodies = model.body_weldid[model.geom_bodyid]
         ours, theirs = (np.flatnonzero(bodies == bodies[geom]).tolist() for geom in pair.geoms)
         every = (GeomPair(model, geoms) for geoms in itertools.product(ours, theirs))
-        self.pairs = [made for made in every if makes(made)]
-        self.geoms = np.reshape([made.geoms for made in self.pairs], (-1, 2)).T
+        self.pairs = [copied for copied in every if makes(copied)]
+        self.geoms = np.reshape([copied.geoms for copied in self.pairs], (-1, 2)).T
         self._landed = np.full((len(self.pairs), 7), np.nan)
 
     def landed(self, chosen: Integers) -> tuple[Array, Array, Array]:

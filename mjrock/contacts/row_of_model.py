@@ -80,29 +80,29 @@ class PairParameters:
     def of_sides(cls, model: mujoco.MjModel, sides: Sequence[tuple[str, int]]) -> PairParameters:
         """The parameters of two sides without an explicit pair, each a geom or a flex with its number."""
 
-        def own(name: str) -> Array:
+        def values(name: str) -> Array:
             return np.array([getattr(model, f"{kind}_{name}")[number] for kind, number in sides])
 
-        priority = own("priority")
+        priority = values("priority")
         deciding = priority == priority.max()
         if priority[0] != priority[1]:
             weight = deciding.astype(float)
         else:
-            solmix = own("solmix")
+            solmix = values("solmix")
             tiny = solmix < mujoco.mjMINVAL
             weight = np.where(tiny.all(), 0.5, np.where(tiny.any(), ~tiny, solmix / max(solmix.sum(), mujoco.mjMINVAL)))
-        solref, averaged = own("solref")[deciding], weight @ own("solref")
-        sliding, torsional, rolling = own("friction")[deciding].max(axis=0).tolist()
+        solref, averaged = values("solref")[deciding], weight @ values("solref")
+        sliding, torsional, rolling = values("friction")[deciding].max(axis=0).tolist()
         pulls = field(model, "geom_adhesion", model.ngeom)
         pulling = [pulls[number] for kind, number in np.array(sides, dtype=object)[deciding] if kind == "geom"]
         together = np.sum if MARGINS_ADD_UP else np.max
         return cls(
             tuple((averaged if (solref[:, 0] > 0).all() else solref.min(axis=0)).tolist()),
-            tuple((weight @ own("solimp")).tolist()),
+            tuple((weight @ values("solimp")).tolist()),
             (0.0, 0.0),
             (sliding, sliding, torsional, rolling, rolling),
-            int(own("condim")[deciding].max()),
-            *_reach(together(own("margin")), together(own("gap"))),
+            int(values("condim")[deciding].max()),
+            *_reach(together(values("margin")), together(values("gap"))),
             float(sum(pulling)),
         )
 
@@ -189,12 +189,12 @@ class FrictionParameters(NamedTuple):
         return self._replace(solreffriction=(-1e-30, -impedance * rate), impratio=impratio)
 
 
-def unused(friction: object, grip: FrictionParameters) -> Iterator[str]:
+def unused(friction: object, found: FrictionParameters) -> Iterator[str]:
     """A sentence on torsional and rolling friction of the request that the condim of the model leaves out."""
-    if is_iterable(friction) and any(grip.friction[max(2, grip.condim - 1) :]):
+    if is_iterable(friction) and any(found.friction[max(2, found.condim - 1) :]):
         yield (
-            f"friction = {tuple(f'{mu:g}' for mu in grip.friction)} has torsional or rolling friction that condim "
-            f"{grip.condim} leaves out; give the geoms condim 4 for torsional, 6 for both"
+            f"friction = {tuple(f'{mu:g}' for mu in found.friction)} has torsional or rolling friction that condim "
+            f"{found.condim} leaves out; give the geoms condim 4 for torsional, 6 for both"
         )
 
 

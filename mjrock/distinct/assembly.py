@@ -114,19 +114,19 @@ def with_supports(system: System, scene: Scene, supports: Sequence[Support]) -> 
 
 def guide(system: System, case: MasonryCase) -> None:
     """Let the actuators of a case guide their blocks."""
-    held, d = case.guided, len(system.axes)
-    system.bodies["inverse_mass"][held[:, :d]] = 0.0
-    system.bodies["inverse_inertia"][held[:, d:].any(axis=1)] = 0.0
+    fixed, d = case.guided, len(system.axes)
+    system.bodies["inverse_mass"][fixed[:, :d]] = 0.0
+    system.bodies["inverse_inertia"][fixed[:, d:].any(axis=1)] = 0.0
 
 
 def guided_as(bodies: Rows, others: Rows) -> None:
-    """Give moving bodies the guides of others. What a guide holds, or has held, has no velocity."""
-    held = [~some["inverse_inertia"].any(axis=(1, 2)) for some in (bodies, others)]
+    """Give moving bodies the guides of others. What a guide fixes, or has fixed, has no velocity."""
+    fixed = [~some["inverse_inertia"].any(axis=(1, 2)) for some in (bodies, others)]
     for name in ("inverse_mass", "inverse_inertia"):
         bodies[name] = others[name]
     bodies["velocity"][bodies["inverse_mass"] == 0] = 0.0
     for name in ("spin",) if is_flat(bodies) else ("spin", "momentum"):
-        bodies[name][held[0] | held[1]] = 0.0
+        bodies[name][fixed[0] | fixed[1]] = 0.0
 
 
 def copied(system: System) -> System:
@@ -137,11 +137,11 @@ def copied(system: System) -> System:
     return system._replace(**tables)
 
 
-def set_initial_friction(lines: Rows, drag: Array) -> None:
+def set_initial_friction(lines: Rows, friction: Array) -> None:
     """Let lines start with the friction at rest along the tangents of their faces [N], shape (m, d - 1)."""
-    force = drag
-    if drag.shape[1] == 2:
+    force = friction
+    if friction.shape[1] == 2:
         first, second = np.array([tangents(tuple(normal)) for normal in lines["normal"].tolist()]).swapaxes(0, 1)
-        force = drag[:, :1] * first + drag[:, 1:] * second
+        force = friction[:, :1] * first + friction[:, 1:] * second
     sprung = np.isfinite(lines["k_s"])[:, None]
-    lines["grip"] = np.where(sprung, -force / np.where(sprung, lines["k_s"][:, None], 1.0), force)
+    lines["shear_state"] = np.where(sprung, -force / np.where(sprung, lines["k_s"][:, None], 1.0), force)

@@ -97,7 +97,7 @@ def solve_explicit(
         >>> mr.solve_explicit(mr.MasonryCase(column, duration=0.1)).outcome.value
         'at rest'
     """
-    given, watch = locals().copy(), Stopwatch()
+    arguments, watch = locals().copy(), Stopwatch()
     problem = problem_of(case, contacts)
     require_flag("ledger", ledger)
     require_flag("forces", forces)
@@ -120,8 +120,7 @@ def solve_explicit(
         require_size("the ledger of this answer", count * books.size, "raise output_step, or leave the ledger out")
     samples = Samples.room(count, setup.system, books, ledger=ledger, checks=len(grid.checks(grid.last + 1)))
     if forces:
-        joints, fixed, _, actuators = required_room(case, count)
-        samples = samples.with_forces(joints, fixed, actuators)
+        samples = samples.with_forces(required_room(case, count))
     warn_if_long(setup, grid)
     stepping = Stopwatch()
     integration = integrate(setup, books, samples, grid, threads)
@@ -137,7 +136,7 @@ def solve_explicit(
         warn_of_ties(case, response.plastic)
     response.stats.update(watch.took())
     response.stats["processor_time"] += integration.processor
-    return recorded(response, given)
+    return recorded(response, arguments)
 
 
 def step_stats(setup: Setup, grid: TimeGrid, integration: Integration, took: dict[str, float]) -> dict[str, Any]:

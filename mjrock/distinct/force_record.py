@@ -21,11 +21,12 @@ from .system import Samples, System
 
 @inlined
 def total_friction(system: System, line: Row) -> Vector:
-    """Friction of a line in the last step, along its face [N]. One that sticks rigidly is dragged as it leaves."""
-    dragged: Vector = read(line.dragged)
+    """Friction of a line in the last step, along its face [N]. A line that sticks rigidly has a shear force only as it
+    leaves its face."""
+    shear_force: Vector = read(line.shear_force)
     if line.k_s < math.inf:
-        return dragged
-    return plus(dragged, last_friction(system.bodies, line, dragged))
+        return shear_force
+    return plus(shear_force, last_friction(system.bodies, line, shear_force))
 
 
 @inlined
@@ -51,24 +52,24 @@ def record_guide_loads(system: System, samples: Samples, row: int) -> None:
 @inlined
 def record_forces(system: System, samples: Samples, row: int) -> None:
     """Keep the forces of the last step at a sample, where there is room for them."""
-    loads, held, guided = samples.loads[row], samples.held[row], samples.guided[row]
-    if len(held) == 0:
+    loads, reactions, guided = samples.loads[row], samples.contact_reactions[row], samples.guided[row]
+    if len(reactions) == 0:
         return
     for p in range(len(system.lines)):
         line = system.lines[p]
-        push, drag, holds = with_laws(system.laws, p, line.push, total_friction(system, line), False)
+        push, friction, holds = with_laws(system.laws, p, line.push, total_friction(system, line), False)
         if line.group < len(loads):
             samples.damage[row, line.group] += lost_by_laws(system.laws, p)
         if was_open(line) and not holds:
             continue
         meet = where_friction_rubs(meeting(system, line))
-        force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
+        force = plus(scaled(push, meet.normal), as_vector(meet.normal, friction))
         if line.group < len(loads):
             body = system.bodies[line.body]
             place = plus(read(body.rest), plus(read(body.place), meet.arm))
             add_moment(loads[line.group], line.sense, place, force)
         if line.fixed >= 0:
-            increase(held[line.fixed], force)
+            increase(reactions[line.fixed], force)
         for i in range(len(guided)):
             if system.guided[i] < 0:
                 continue

@@ -14,7 +14,7 @@ from ..geometry.vectors import Vector
 from ..quantities import Array, named
 from ..result.response import End
 from .assembly import copied, guided_as
-from .loop import Clock, accelerated
+from .loop import Clock, ground_acceleration
 from .search.contact_search import SearchState
 from .supports import places
 from .system import System
@@ -26,8 +26,8 @@ class Memory(NamedTuple):
     Args:
         structure: to which it belongs, see `Setup`.
         system: with the velocities half a step before the pose.
-        before: length of the step that led to the pose [s].
-        pushed: mean acceleration of the ground over the half of that step before the pose [m/s2].
+        h_before: length of the step that led to the pose [s].
+        ground_acceleration_before: its mean over the half of that step before the pose [m/s2].
         moved: displacement of each fixed block that moves in that step, by name, shape (d,) each [m].
         search: the state of the contact search.
         until_search: steps until its next update.
@@ -35,8 +35,8 @@ class Memory(NamedTuple):
 
     structure: object
     system: System
-    before: float
-    pushed: Vector
+    h_before: float
+    ground_acceleration_before: Vector
     moved: dict[str, Array]
     search: SearchState | None = None
     until_search: int = 0
@@ -80,10 +80,10 @@ def remember(structure: object, system: System, clock: Clock, blocks: tuple[str,
         blocks: names of the fixed blocks that move.
     """
     t, h, supports = clock.step * clock.h, clock.h, system.supports
-    pushed = accelerated(system.ground, t - 0.25 * h, 0.5 * h, system.axes)
+    ground_acceleration_before = ground_acceleration(system.ground, t - 0.25 * h, 0.5 * h, system.axes)
     moved, kept = dict(zip(blocks, places(supports, t) - supports.moved, strict=True)), copied(system)
     kept = kept._replace(links=tuple(table.remembered(t) for table in kept.links))
-    return Memory(structure, kept, h, pushed, moved)
+    return Memory(structure, kept, h, ground_acceleration_before, moved)
 
 
 def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:

@@ -21,22 +21,22 @@ from .system import Books, System
 @inlined
 def damp_velocities(system: System, books: Books, share: float) -> None:
     """Let all velocities decay by exp(-share)."""
-    left, taken = math.exp(-share), 0.0
+    factor, dissipated = math.exp(-share), 0.0
     for b in range(len(system.bodies)):
         body = system.bodies[b]
         velocity, spin = read(body.velocity), read(body.spin)
-        taken += body.mass * dot(velocity, velocity) + dot(momentum_of(body), spin)
-        put(body.velocity, scaled(left, velocity))
-        damp_spin(body, scaled(left, spin), left)
-    books.dashpots[len(books.dashpots) - 1] += 0.5 * (1 - left * left) * taken
+        dissipated += body.mass * dot(velocity, velocity) + dot(momentum_of(body), spin)
+        put(body.velocity, scaled(factor, velocity))
+        damp_spin(body, scaled(factor, spin), factor)
+    books.dashpots[len(books.dashpots) - 1] += 0.5 * (1 - factor * factor) * dissipated
 
 
 @inlined
-def damp_spin(body: Row, spin: Vector, left: float) -> None:
-    """Give a body a spin, and leave it a share of its angular momentum, which only those of space keep."""
+def damp_spin(body: Row, spin: Vector, factor: float) -> None:
+    """Give a body a spin, and multiply its angular momentum, which only bodies of space have."""
     put(body.spin, spin)
     if len(spin) == 3:
-        put(body.momentum, scaled(left, read(body.momentum)))
+        put(body.momentum, scaled(factor, read(body.momentum)))
 
 
 @inlined
@@ -44,19 +44,19 @@ def damp_components(force: Array, velocity: Array, share: float) -> float:
     """Take a share of the components of a force against those of a velocity. Returns the power that it takes [W]."""
     power = 0.0
     for i in range(len(force)):
-        less = math.copysign(share * abs(force[i]), velocity[i]) if velocity[i] != 0 else 0.0
-        power += less * velocity[i]
-        force[i] -= less
+        reduction = math.copysign(share * abs(force[i]), velocity[i]) if velocity[i] != 0 else 0.0
+        power += reduction * velocity[i]
+        force[i] -= reduction
     return power
 
 
 @inlined
-def damp_unbalanced(system: System, books: Books, share: float, kick: float) -> None:
+def damp_unbalanced(system: System, books: Books, share: float, force_time: float) -> None:
     """Take a share of the unbalanced force and moment on each body while they act for a time [s]."""
-    taken = 0.0
+    dissipated = 0.0
     for b in range(len(system.bodies)):
         body = system.bodies[b]
-        taken += kick * (
+        dissipated += force_time * (
             damp_components(body.force, body.velocity, share) + damp_components(body.moment, body.spin, share)
         )
-    books.dashpots[len(books.dashpots) - 1] += taken
+    books.dashpots[len(books.dashpots) - 1] += dissipated

@@ -14,7 +14,7 @@ from ..quantities import GRAVITY, Array, Integers, warn_of
 from ..result.forces import Forces, KeptForces, forces_of
 from ..result.ledger import Ledger, StepError, require_no_gain, warn_if_open
 from ..result.motion import SampledMotion, thinned
-from ..result.reading import BesidePoses, Reading
+from ..result.reading import ContactHistory, Reading
 from ..result.response import End, Response
 from ..result.ties import Plastic, plastic_of, ties_message
 from ..scene.scene import Scene
@@ -57,14 +57,14 @@ class Run:
     @property
     def links(self) -> Iterator[tuple[Kind, Row, str]]:
         """The table, the row and the name of each link."""
-        for table, names in zip(self.integration.system.links, self.setup.names, strict=True):
+        for table, names in zip(self.integration.system.links, self.setup.link_names, strict=True):
             for row, name in zip(table.rows, names, strict=True):
                 yield table, row, name
 
-    def forces_of(self, pulled: Array, *, driven: bool) -> dict[str, Array]:
+    def forces_of(self, link_forces: Array, *, driven: bool) -> dict[str, Array]:
         """The force of each link, or of each actuator, by name, among those of all."""
         some = ((row, name) for table, row, name in self.links if table.reported and table.driven is driven)
-        return {name: pulled[:, row.number] for row, name in some}
+        return {name: link_forces[:, row.number] for row, name in some}
 
     @cached_property
     def energy(self) -> Array:
@@ -107,7 +107,7 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
         joints=reading.joints,
         plastic=yielded,
         ledger=ledger_of(run, kept) if ledger else None,
-        actuators=run.forces_of(samples.pulled[kept], driven=True),
+        actuators=run.forces_of(samples.link_forces[kept], driven=True),
         kept_forces=kept_forces(run, kept),
         stats=reading.stats | stats,
         end=End(samples.pose[-1].copy(), samples.velocity[-1].copy(), run.integration.memory),
@@ -128,18 +128,24 @@ def response_of(run: Run, *, ledger: bool, stride: int, stats: dict[str, Any]) -
 def kept_forces(run: Run, kept: Integers) -> Forces | None:
     """The forces of a run at some of its samples, if they were kept."""
     samples = run.samples.chosen(kept)
-    if not samples.held.shape[1]:
+    if not samples.contact_reactions.shape[1]:
         return None
-    pulled = run.forces_of(-samples.pulled, driven=False)
-    driven = run.forces_of(samples.pulled, driven=True)
+    driven = run.forces_of(samples.link_forces, driven=True)
     damage = None
     if any(len(law.rows) for law in run.integration.system.laws):
         dry = [bond is None for bond in run.scene.contacts.bonds]
         damage = np.where(dry, np.nan, samples.damage)
-    loads = samples.pose, samples.loads, samples.held
-    jacks = np.array([*driven.values()]).T.copy() if driven else None
-    gathered = KeptForces(run.t[kept], *loads, pulled, jacks, samples.guided, damage)
-    return forces_of(run.case, run.case.rest_geometry.frames, gathered)
+    of_run = KeptForces(
+        t=run.t[kept],
+        pose=samples.pose,
+        loads=samples.loads,
+        contact_reactions=samples.contact_reactions,
+        links=run.forces_of(-samples.link_forces, driven=False),
+        driven=np.array([*driven.values()]).T.copy() if driven else None,
+        guided=samples.guided,
+        damage=damage,
+    )
+    return forces_of(run.case, run.case.rest_geometry.frames, of_run)
 
 
 def plastic(run: Run) -> dict[str, Plastic]:
@@ -147,7 +153,14 @@ def plastic(run: Run) -> dict[str, Plastic]:
     ties, work, memory = ties_of(run.integration.system), run.books.links, run.setup.memory
     first, reach = ties["account"], run.scene.ties.reach
     before = np.zeros(len(ties)) if memory is None else ties_of(memory.system)["reach"] - reach
-    return plastic_of(run.scene, ties["drawn"], work[first], ties["broken"], work[first + 1], before=before)
+    return plastic_of(
+        run.scene,
+        elongation=ties["plastic"],
+        energy=work[first],
+        broken=ties["broken"],
+        lost=work[first + 1],
+        before=before,
+    )
 
 
 def ties_of(system: System) -> Rows:
@@ -160,10 +173,11 @@ def reading_of(run: Run) -> Reading:
     samples, system, joint = run.samples, run.integration.system, run.scene.contacts.joint
     motion = SampledMotion(samples.pose, samples.velocity, run.energy)
     search = None if run.integration.memory is None else run.integration.memory.search
-    left = search is not None and bool(search.handed_over.any())
+    has_left_joints = search is not None and bool(search.handed_over.any())
     cracked = dict(item for law in system.laws for item in law.cracked(run.scene).items())
-    beside = BesidePoses(system.lines["widest"][: len(joint)], left, cracked)
-    return run.setup.problem.read(run.scene, run.t, motion, released=run.setup.course.released, beside=beside)
+    history = ContactHistory(system.lines["widest"][: len(joint)], has_left_joints, cracked)
+    released = run.setup.course.released
+    return run.setup.problem.read(run.scene, run.t, motion, released=released, history=history)
 
 
 class EnergyGainError(RuntimeError):

@@ -37,9 +37,9 @@ class Kinds(NamedTuple):
         edge: an edge of a face, of which one in the plane has two.
         tangent: a tangential direction of a line that sticks rigidly. A line has d - 1 of them.
         total: what is booked for all lines together [J]: `friction`, what is in the shear springs included, `ground`,
-            the work of ground and supports, and `DISSIPATED_BY_LAWS`; `push` is the acceleration of the ground in the
-            last step [m/s2].
-        apart: force and moment of a line on a body that wait until all threads have pressed, see `thread`.
+            the work of ground and supports, and `DISSIPATED_BY_LAWS`; `ground_acceleration` is that
+            of the last step [m/s2].
+        pending: force and moment of a line on a body that wait until all threads have pressed, see `thread`.
     """
 
     body: np.dtype[np.void]
@@ -47,7 +47,7 @@ class Kinds(NamedTuple):
     edge: np.dtype[np.void]
     tangent: np.dtype[np.void]
     total: np.dtype[np.void]
-    apart: np.dtype[np.void]
+    pending: np.dtype[np.void]
 
 
 @lru_cache
@@ -59,7 +59,7 @@ def kinds(d: int) -> Kinds:
         _line(d, s),
         _edge(d),
         _tangent(d, s),
-        [*numbers("friction", "ground", *DISSIPATED_BY_LAWS), *vectors(d, "push")],
+        [*numbers("friction", "ground", *DISSIPATED_BY_LAWS), *vectors(d, "ground_acceleration")],
         [*integers("body"), *vectors(d, "force"), *vectors(s, "moment")],
     )
     return Kinds(*(np.dtype((np.record, kind)) for kind in fields))
@@ -115,11 +115,11 @@ def _line(d: int, s: int) -> Fields:
         *vectors(d, "normal"),  # unit vector out of the face, of a POINT_ON_FIXED_BLOCK into that of the body
         *numbers(*Law._fields, "c_s"),  # of the law, and the dashpot along the face [N s/m]
         *numbers("margin"),  # square of the least distance of the origin from the end of the face, or infinite [m2]
-        *numbers("push", "pressed"),  # force, and force of the dashpot, of the last step [N]
+        *numbers("push", "dashpot_force"),  # force along the normal, and of the dashpot, of the last step [N]
         *numbers("depth", "rate"),  # overlap, and growth of the gap, in the last step [m, m/s]
-        *vectors(s, "dragged"),  # friction of the shear spring in the last step [N]
-        *vectors(s, "grip"),  # stretch of the shear spring [m], or rigid friction of the last step [N], see `friction`
-        *short_integers("apart", "face_apart"),  # its rows of forces that wait, 0 for none, see `thread`
+        *vectors(s, "shear_force"),  # friction of the shear spring in the last step [N]
+        *vectors(s, "shear_state"),  # stretch of the shear spring [m], or last rigid friction [N], see `friction`
+        *short_integers("pending", "face_pending"),  # its rows of forces that wait, 0 for none, see `thread`
         *short_integers("past"),  # 1 for a line that was past the end of its face then
         # what a step reads where a line touches or slides off
         *short_integers("fixed"),  # number of the fixed block of its face among these, -1 where that is a body

@@ -35,13 +35,13 @@ class Setup:
         problem: the case with its contacts.
         scene, course, system: the structure, what happens to it, and its rows.
         step_length: of its steps.
-        ends: rotation at which the run ends [rad].
+        end_rotation: rotation at which the run ends [rad].
         search: the contact search for blocks that fall; a wall has none.
         structure: masonry with its effects, or the key of the scene of a wall and its contacts. A run can be continued
             by one of the same structure.
-        blocks: the fixed blocks that move, in the order of the supports.
-        names: of the links of each kind.
-        drag, local: mass-proportional [1/s] and local damping [-] of the motion.
+        moving_blocks: the fixed blocks that move, in the order of the supports.
+        link_names: of the links of each kind.
+        mass_damping, local_damping: of the motion [1/s, -].
         memory: of the run that this one carries on, or None.
     """
 
@@ -50,33 +50,33 @@ class Setup:
     course: Course
     system: System
     step_length: StepLength
-    ends: float = math.inf
+    end_rotation: float = math.inf
     search: ContactSearch | None = None
     structure: object = None
-    blocks: tuple[str, ...] = ()
+    moving_blocks: tuple[str, ...] = ()
     memory: Memory | None = None
-    names: tuple[tuple[str, ...], ...] = ()
-    drag: float = 0.0
-    local: float = 0.0
+    link_names: tuple[tuple[str, ...], ...] = ()
+    mass_damping: float = 0.0
+    local_damping: float = 0.0
 
     @property
     def has_motion_damping(self) -> bool:
         """Whether its motion is damped."""
-        return self.drag > 0 or self.local > 0
+        return self.mass_damping > 0 or self.local_damping > 0
 
 
-def with_motion_damping(setup: Setup, drag: float, local: float) -> Setup:
+def with_motion_damping(setup: Setup, mass_damping: float, local_damping: float) -> Setup:
     """The setup with mass-proportional [1/s] and local damping [-] of the motion.
 
     Raises:
         ValueError: for local damping of joints that stick rigidly.
     """
-    if local > 0 and not np.isfinite(setup.system.lines["k_s"]).all():
+    if local_damping > 0 and not np.isfinite(setup.system.lines["k_s"]).all():
         raise ValueError(
-            f"local_damping = {local:g} needs joints with a shear stiffness, whose friction is part of the unbalanced "
-            "force: take mass_damping, or masonry whose joints have k_s"
+            f"local_damping = {local_damping:g} needs joints with a shear stiffness, whose friction is part of the "
+            "unbalanced force: take mass_damping, or masonry whose joints have k_s"
         )
-    return replace(setup, drag=drag, local=local) if drag or local else setup
+    return replace(setup, mass_damping=mass_damping, local_damping=local_damping)
 
 
 def setup_of(case: Case | MasonryCase, contacts: Contacts | None, state: State | None) -> Setup:
@@ -109,7 +109,7 @@ def continued(setup: Setup, start: object) -> Setup:
         return setup
     if setup.search is not None and memory.search is not None:
         setup.search.state = deepcopy(memory.search)
-    return replace(setup, memory=memory, system=recalled(memory, setup.system, setup.blocks))
+    return replace(setup, memory=memory, system=recalled(memory, setup.system, setup.moving_blocks))
 
 
 def setup_of_wall(problem: Problem, case: Case, scene: Scene, course: Course) -> Setup:
@@ -117,8 +117,8 @@ def setup_of_wall(problem: Problem, case: Case, scene: Scene, course: Course) ->
     system = system_of(scene)
     names, links = links_of(scene, case, system.bodies)
     system = at_pose(system, course.pose, course.velocity)._replace(ground=course.ground, links=links)
-    length = StepLength.of_wall(system, case.wall.p)
-    return Setup(problem, scene, course, system, length, ON_ITS_FACE, names=names)
+    step_length = StepLength.of_wall(system, case.wall.p)
+    return Setup(problem, scene, course, system, step_length, ON_ITS_FACE, link_names=names)
 
 
 def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: Course) -> Setup:
@@ -129,22 +129,22 @@ def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: 
     guided = np.concatenate([table.rows["body"] for table in links if table.driven])
     system = copied(at_rest.system)._replace(ground=course.ground, links=links, guided=guided)
     system = with_supports(system, scene, case.supports)
-    acts = any(len(table.rows) for table in passive)
-    unguided = longest_step(system._replace(links=passive)) if acts else at_rest.limit
+    has_passive_links = any(len(table.rows) for table in passive)
+    unguided = longest_step(system._replace(links=passive)) if has_passive_links else at_rest.limit
     guide(system, case)
     search = at_rest.search
-    length = StepLength.of_masonry(system, unguided, search.longest, search.impacts)
-    blocks = tuple(support.block for support in case.supports)
+    step_length = StepLength.of_masonry(system, unguided, search.longest, search.impacts)
+    moving_blocks = tuple(support.block for support in case.supports)
     return Setup(
         problem,
         scene,
         course,
         at_pose(system, course.pose, course.velocity),
-        length,
-        search=search.begun(blocks),
+        step_length,
+        search=search.begun(moving_blocks),
         structure=(case.masonry, case.passive),
-        blocks=blocks,
-        names=names,
+        moving_blocks=moving_blocks,
+        link_names=names,
     )
 
 
@@ -167,9 +167,8 @@ def masonry_at_rest(scene: Scene) -> AtRest:
     """Masonry at rest, or as drawn where it is not settled, computed once for each scene."""
     system = system_of(scene, ended=True)
     if scene.settled is None:
-        pose, drag = scene.rest_state
-        set_initial_friction(system.lines, drag)
-        at_pose(system, pose)
+        set_initial_friction(system.lines, scene.rest_state.friction)
+        at_pose(system, scene.rest_state.pose)
     else:
         open_slightly(system.lines, scene)
     search = ContactSearch(scene, system)

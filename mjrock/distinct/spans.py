@@ -11,7 +11,7 @@ from ..quantities import Array, Integers
 from .contacts.contact import press_lines
 from .rows import Row, Rows
 from .system import Books, System, Tables
-from .thread import Thread, bring_together, wait
+from .thread import Thread, add_pending_forces, wait
 
 act = method("act")
 
@@ -47,7 +47,7 @@ def books_of_span(books: Books, span: int, dashpots: Array, active: Integers, to
         impulse=books.impulse,
         remaining=books.remaining,
         encounters=books.encounters,
-        apart=books.apart,
+        pending=books.pending,
     )
 
 
@@ -71,9 +71,9 @@ def with_rows(system: System, bodies: Rows, lines: Rows, tangents: Rows) -> Syst
 @inlined
 def bodies_of_span(system: System, books: Books, thread: Thread, span: int) -> tuple[System, Books]:
     """The bodies of a span, and its books."""
-    some = system.bodies[thread.bodies[span] : thread.bodies[span + 1]]
-    own = books_of_span(books, span, books.dashpots, books.active, books.touched)
-    return with_rows(system, some, system.lines, system.tangents), own
+    bodies = system.bodies[thread.bodies[span] : thread.bodies[span + 1]]
+    span_books = books_of_span(books, span, books.dashpots, books.active, books.touched)
+    return with_rows(system, bodies, system.lines, system.tangents), span_books
 
 
 @inlined
@@ -96,28 +96,28 @@ def press_by_laws(laws: Tables, system: System, books: Books, thread: Thread, t:
         if len(laws[0].rows) > 0:
             for span in range(thread.own_lines[0], thread.own_lines[1]):
                 first, last = thread.lines[span], thread.lines[span + 1]
-                some = with_rows(system, system.bodies, system.lines[first:last], system.tangents)
-                own = books_of_lines(system, books, thread, span, books.active, books.touched)
-                act(rows_within(laws[0], first, last), some, own, t, h)
-            bring_together(thread, books.apart, system.bodies)
+                lines_of_span = with_rows(system, system.bodies, system.lines[first:last], system.tangents)
+                span_books = books_of_lines(system, books, thread, span, books.active, books.touched)
+                act(rows_within(laws[0], first, last), lines_of_span, span_books, t, h)
+            add_pending_forces(thread, books.pending, system.bodies)
             wait(thread)
         press_by_laws(laws[1:], system, books, thread, t, h)
 
 
 @inlined
-def press_own_lines(system: System, books: Books, thread: Thread, h: float, kick: float, lead: float) -> int:
-    """`press_lines` for the lines of a thread. Returns how many stick rigidly."""
+def press_spans(system: System, books: Books, thread: Thread, h: float, force_time: float, steps_ahead: float) -> int:
+    """`press_lines` for the spans of a thread. Returns how many stick rigidly."""
     active, touched, each = 0, 0, len(system.axes) - 1
     start = thread.starts[thread.number]
     for span in range(thread.own_lines[0], thread.own_lines[1]):
         first, last = thread.lines[span], thread.lines[span + 1]
-        some = with_rows(system, system.bodies, system.lines[first:last], system.tangents[each * active :])
-        own = books_of_lines(system, books, thread, span, books.active[active:], books.touched[start + touched :])
-        sticking, met = press_lines(some, own, h, kick, lead)
+        lines_of_span = with_rows(system, system.bodies, system.lines[first:last], system.tangents[each * active :])
+        accounts = books_of_lines(system, books, thread, span, books.active[active:], books.touched[start + touched :])
+        sticking, met = press_lines(lines_of_span, accounts, h, force_time, steps_ahead)
         for i in range(sticking):
-            own.active[i] += first
+            accounts.active[i] += first
         for i in range(met):
-            own.touched[i] += first
+            accounts.touched[i] += first
         active, touched = active + sticking, touched + met
     thread.touched[thread.number] = touched
     return active
@@ -148,12 +148,12 @@ def sum_up(system: System, books: Books) -> None:
 
 
 @inlined
-def move_work(whole: Row, part: Row) -> None:
+def move_work(total: Row, part: Row) -> None:
     """Add what a row of totals has booked to another, and let it begin anew."""
-    whole.friction, whole.ground = whole.friction + part.friction, whole.ground + part.ground
-    whole.tension, whole.slip = whole.tension + part.tension, whole.slip + part.slip
-    whole.crushing = whole.crushing + part.crushing
-    whole.joint_ends = whole.joint_ends + part.joint_ends
-    whole.encounter_ends = whole.encounter_ends + part.encounter_ends
+    total.friction, total.ground = total.friction + part.friction, total.ground + part.ground
+    total.tension, total.slip = total.tension + part.tension, total.slip + part.slip
+    total.crushing = total.crushing + part.crushing
+    total.joint_ends = total.joint_ends + part.joint_ends
+    total.encounter_ends = total.encounter_ends + part.encounter_ends
     part.friction = part.ground = part.tension = part.slip = part.crushing = 0.0
     part.joint_ends = part.encounter_ends = 0.0

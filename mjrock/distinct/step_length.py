@@ -48,7 +48,7 @@ SAMPLES_OF_A_WALL = 1e-3
 read off them."""
 CHECKED_EVERY, MOST_CHECKS = 100, 1_000_000
 """Steps from one check of the energy to the next, and most checks."""
-SPLINTERS = 0.1
+LEAST_STEP_OF_LIGHT_BLOCKS = 0.1
 """Least share of the longest stable step of the joints to which the springs of blocks that may meet later shorten it
 [-]. Lighter ones have softer contacts."""
 STOPPED = 0.15
@@ -62,7 +62,7 @@ blows add up."""
 
 LOOK_AHEAD_BELOW = 0.25
 """Step over the longest stable one up to which dashpots look ahead, however strong they are [-]."""
-LEAD = 0.5
+STEPS_AHEAD = 0.5
 """By how many steps dashpots look ahead: they take the rate at the pose, half a step after the velocity that there is.
 In long steps what is foreseen at a contact is worse than that velocity, see `StepLength.looks_ahead`."""
 STABLE_AHEAD = 0.5
@@ -174,7 +174,7 @@ class StepLength(NamedTuple):
             given: flat impacts of pairs that are given.
         """
         limit = longest_step(system) if len(system.guided) else unguided
-        least = SPLINTERS * min(limit, unguided)
+        least = LEAST_STEP_OF_LIGHT_BLOCKS * min(limit, unguided)
         impacts = Impacts.at_joints(system)
         step = impacts.step(STEP_TAKEN * min(limit, later.step(least)))
         step = max(given.step(step), min(step, STEP_TAKEN * later.damped * least))
@@ -206,14 +206,14 @@ class TimeGrid(NamedTuple):
 
     Args:
         h: length of a step [s].
-        every: steps from one sample to the next.
+        steps_per_sample: steps from one sample to the next.
         stride: samples from one that is returned to the next.
         last: number of the last step, of which there is a sample too.
         end: when it is made [s].
     """
 
     h: float
-    every: int
+    steps_per_sample: int
     stride: int
     last: int
     end: float
@@ -230,31 +230,32 @@ class TimeGrid(NamedTuple):
         if timestep is None:
             count = intervals(duration, output_step)
             parts = intervals(duration / count, length.spacing)
-            every = intervals(duration / (count * parts), length.default)
-            last = count * parts * every
-            return cls(duration / last, every, parts, last, duration)
+            steps_per_sample = intervals(duration / (count * parts), length.default)
+            last = count * parts * steps_per_sample
+            return cls(h=duration / last, steps_per_sample=steps_per_sample, stride=parts, last=last, end=duration)
         length.require_stable(timestep)
         steps, last = whole_steps(output_step, timestep), max(1, round(duration / timestep))
-        every = steps // min(steps, intervals(steps * timestep, length.spacing))
-        return cls(timestep, every, steps // every, last, last * timestep)
+        steps_per_sample = steps // min(steps, intervals(steps * timestep, length.spacing))
+        stride = steps // steps_per_sample
+        return cls(h=timestep, steps_per_sample=steps_per_sample, stride=stride, last=last, end=last * timestep)
 
     @property
-    def check(self) -> int:
+    def steps_per_check(self) -> int:
         """Steps from one check of the energy to the next."""
         return max(CHECKED_EVERY, -(-self.last // MOST_CHECKS))
 
     def checks(self, steps: int) -> Array:
         """Times of the checks of a number of steps [s]."""
-        count = steps // self.check + 1 if steps <= self.last else -(-self.last // self.check) + 1
-        return self.h * np.minimum(self.check * np.arange(count), self.last)
+        count = steps // self.steps_per_check + 1 if steps <= self.last else -(-self.last // self.steps_per_check) + 1
+        return self.h * np.minimum(self.steps_per_check * np.arange(count), self.last)
 
     @property
     def samples(self) -> int:
         """How many samples there are."""
-        return -(-self.last // self.every) + 1
+        return -(-self.last // self.steps_per_sample) + 1
 
     def times(self) -> Array:
         """Times of the samples [s], shape (samples,)."""
-        t = self.h * self.every * np.arange(self.samples)
+        t = self.h * self.steps_per_sample * np.arange(self.samples)
         t[-1] = self.end
         return np.asarray(t)

@@ -8,10 +8,11 @@ import numpy as np
 
 from ..geometry.frames import PLANE, SPACE
 from ..quantities import Array, Integers
+from ..result.forces import ForceCounts
 from ..scene.course import Ground
 from .rows import DISSIPATED_BY_LAWS, Rows, joined, kinds, rows
 from .supports import Supports
-from .thread import Thread, put_apart, spans_of, spans_of_bodies, threads_of
+from .thread import Thread, pending_forces, spans_of, spans_of_bodies, threads_of
 
 Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
@@ -60,7 +61,7 @@ class Books(NamedTuple):
             likewise.
         encounters: what the dashpots of lines book that a search has found, for each span but the first of these: that
             of span c is the number c + group.
-        apart: forces of lines that wait until all threads have pressed, see `thread.put_apart`.
+        pending: forces of lines that wait until all threads have pressed, see `thread.pending_forces`.
     """
 
     dashpots: Array
@@ -71,20 +72,20 @@ class Books(NamedTuple):
     impulse: Array
     remaining: Array
     encounters: Array
-    apart: Rows
+    pending: Rows
 
     @classmethod
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
         links = sum(len(table.rows) * len(table.booked) for table in system.links)
         none, integers, kind = np.zeros(0), np.zeros(0, dtype=np.int64), kinds(len(system.axes))
-        waiting = rows(kind.total, 1), integers, integers, none, none, none, rows(kind.apart, 1)
+        waiting = rows(kind.total, 1), integers, integers, none, none, none, rows(kind.pending, 1)
         return cls(np.zeros(groups), np.zeros(links), *waiting).with_room(system)
 
     def with_room(self, system: System) -> Books:
         """The books with room for the lines of a system, whose forces wait for no other thread."""
         lines, spans = len(system.lines), spans_of(system.lines)
-        books = self._replace(apart=put_apart(system.bodies, system.lines, spans[[0, -1]]))
+        books = self._replace(pending=pending_forces(system.bodies, system.lines, spans[[0, -1]]))
         if lines > len(self.active):
             active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
             books = books._replace(active=active, touched=touched, impulse=np.zeros(lines), remaining=np.zeros(lines))
@@ -99,8 +100,8 @@ class Books(NamedTuple):
 
     def of_threads(self, system: System, count: int) -> tuple[Books, tuple[Thread, ...]]:
         """The books with room for the lines of a system, and a number of threads for them."""
-        books, (threads, apart) = self.with_room(system), threads_of(system.bodies, system.lines, count)
-        return books._replace(apart=apart), threads
+        books, (threads, pending) = self.with_room(system), threads_of(system.bodies, system.lines, count)
+        return books._replace(pending=pending), threads
 
     @property
     def size(self) -> int:
@@ -117,9 +118,9 @@ class Samples(NamedTuple):
         checks: rows of `ENERGY` at checks of the energy, at a fixed number of steps, however far apart the
             samples are.
         dashpots, links: the accounts of `Books`, (samples, accounts), without a ledger (samples, 0).
-        pulled: force of each link [N], shape (samples, links).
-        loads, held: forces of joints and of fixed blocks, see `result.forces.KeptForces`, shapes (samples, joints, nv)
-            and (samples, blocks, d).
+        link_forces: force of each link [N], shape (samples, links).
+        loads, contact_reactions: forces of joints and of fixed blocks, see `result.forces.KeptForces`, shapes
+            (samples, joints, nv) and (samples, blocks, d).
         damage: share of its bond that each joint has lost, the mean over its area [-], shape (samples, joints).
         guided: force and moment about its centroid of all but a guide on the block of each actuator [N, N m], shape
             (samples, actuators, nv). All four have no columns where no forces are kept.
@@ -131,9 +132,9 @@ class Samples(NamedTuple):
     checks: Rows
     dashpots: Array
     links: Array
-    pulled: Array
+    link_forces: Array
     loads: Array
-    held: Array
+    contact_reactions: Array
     damage: Array
     guided: Array
 
@@ -149,11 +150,18 @@ class Samples(NamedTuple):
         arrays += [np.zeros((count, links)), *(np.zeros((count, 0, *size)) for size in sizes)]
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, checks), *arrays)
 
-    def with_forces(self, joints: int, blocks: int, actuators: int) -> Samples:
-        """The same with room for the forces of a number of joints, fixed blocks and actuators."""
-        counts = {"loads": joints, "held": blocks, "damage": joints, "guided": actuators}
-        parts = {name: (n, getattr(self, name)) for name, n in counts.items()}
-        return self._replace(**{name: np.zeros((len(old), n, *old.shape[2:])) for name, (n, old) in parts.items()})
+    def with_forces(self, counts: ForceCounts) -> Samples:
+        """The same with room for the forces of joints, fixed blocks and actuators."""
+
+        def room(empty: Array, count: int) -> Array:
+            return np.zeros((len(empty), count, *empty.shape[2:]))
+
+        return self._replace(
+            loads=room(self.loads, counts.joints),
+            contact_reactions=room(self.contact_reactions, counts.fixed),
+            damage=room(self.damage, counts.joints),
+            guided=room(self.guided, counts.actuators),
+        )
 
     def chosen(self, which: slice | Integers) -> Samples:
         """Some of the samples, and all checks."""

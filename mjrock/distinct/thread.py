@@ -52,7 +52,7 @@ class Thread(NamedTuple):
     bodies: Integers
     own_lines: tuple[int, int]
     own_bodies: tuple[int, int]
-    own_apart: tuple[int, int]
+    own_pending: tuple[int, int]
     starts: Integers
     touched: Integers
     gate: Integers
@@ -60,18 +60,18 @@ class Thread(NamedTuple):
 
 
 def threads_of(bodies: Rows, lines: Rows, count: int) -> tuple[tuple[Thread, ...], Rows]:
-    """A number of threads for these bodies and lines, and room for the forces that wait, see `put_apart`."""
+    """A number of threads for these bodies and lines, and room for the forces that wait, see `pending_forces`."""
     spans, of_bodies = spans_of(lines), spans_of_bodies(bodies)
     parts, parts_of_bodies = ([i * (len(each) - 1) // count for i in range(count + 1)] for each in (spans, of_bodies))
-    apart = put_apart(bodies, lines, spans[parts])
-    first = (1 + apart["body"][1:].searchsorted(of_bodies[parts_of_bodies])).tolist()
+    pending = pending_forces(bodies, lines, spans[parts])
+    first = (1 + pending["body"][1:].searchsorted(of_bodies[parts_of_bodies])).tolist()
     touched, gate = np.zeros(count, dtype=np.int64), np.zeros(GATE_END + 1, dtype=np.int64)
     shared = spans[parts[:-1]], touched, gate, yielding()
-    own_lines, own_bodies, own_apart = (list(pairwise(each)) for each in (parts, parts_of_bodies, first))
+    own_lines, own_bodies, own_pending = (list(pairwise(each)) for each in (parts, parts_of_bodies, first))
     threads = [
-        Thread(i, count, spans, of_bodies, own_lines[i], own_bodies[i], own_apart[i], *shared) for i in range(count)
+        Thread(i, count, spans, of_bodies, own_lines[i], own_bodies[i], own_pending[i], *shared) for i in range(count)
     ]
-    return tuple(threads), apart
+    return tuple(threads), pending
 
 
 def spans_of(lines: Rows) -> Integers:
@@ -89,7 +89,7 @@ def spans_of_bodies(bodies: Rows) -> Integers:
     return np.array([*range(0, len(bodies), BODIES_TOGETHER), len(bodies)])
 
 
-def put_apart(bodies: Rows, lines: Rows, parts: Integers) -> Rows:
+def pending_forces(bodies: Rows, lines: Rows, parts: Integers) -> Rows:
     """Room for the forces on bodies that lines of two threads press on, body by body in the order of the lines. The
     first row is not used.
 
@@ -98,9 +98,9 @@ def put_apart(bodies: Rows, lines: Rows, parts: Integers) -> Rows:
             their force need not wait.
         parts: where the lines of each thread begin, and where those of the last one end.
     """
-    kind = kinds(bodies["rest"].shape[1]).apart
+    kind = kinds(bodies["rest"].shape[1]).pending
     if len(parts) == 2:  # one thread
-        lines["apart"] = lines["face_apart"] = 0
+        lines["pending"] = lines["face_pending"] = 0
         return rows(kind, 1, body=-1)
     thread = np.repeat(np.arange(len(parts) - 1), np.diff(parts))
     sides = np.column_stack([lines["body"], lines["face"]]).ravel()
@@ -112,7 +112,7 @@ def put_apart(bodies: Rows, lines: Rows, parts: Integers) -> Rows:
     waits = waits[np.argsort(sides[waits], kind="stable")]
     numbers = np.zeros(2 * len(lines), dtype=np.int32)
     numbers[waits] = 1 + np.arange(len(waits))
-    lines["apart"], lines["face_apart"] = numbers[::2], numbers[1::2]
+    lines["pending"], lines["face_pending"] = numbers[::2], numbers[1::2]
     return rows(kind, 1 + len(waits), body=np.append(-1, sides[waits]))
 
 
@@ -134,32 +134,32 @@ def add_force(body: Row, arm: Vector, force: Vector) -> None:
 
 
 @inlined
-def press_apart(apart: Rows, bodies: Rows, line: Row, arms: tuple[Vector, Vector], force: Vector) -> None:
+def add_line_force(pending: Rows, bodies: Rows, line: Row, arms: tuple[Vector, Vector], force: Vector) -> None:
     """Add the force of a line on its body and on that of its face [N], or let it wait.
 
     Args:
-        apart: forces that wait.
+        pending: forces that wait.
         bodies, line: the bodies, and the line.
         arms: from the two centroids to where the force acts [m].
         force: on the body of the line.
     """
-    if line.apart > 0:
-        add_force(apart[line.apart], arms[0], force)
+    if line.pending > 0:
+        add_force(pending[line.pending], arms[0], force)
     else:
         add_force(bodies[line.body], arms[0], force)
     if line.face >= 0:
-        if line.face_apart > 0:
-            add_force(apart[line.face_apart], arms[1], scaled(-1.0, force))
+        if line.face_pending > 0:
+            add_force(pending[line.face_pending], arms[1], scaled(-1.0, force))
         else:
             add_force(bodies[line.face], arms[1], scaled(-1.0, force))
 
 
 @inlined
-def bring_together(thread: Thread, apart: Rows, bodies: Rows) -> None:
+def add_pending_forces(thread: Thread, pending: Rows, bodies: Rows) -> None:
     """Add the forces that wait to those of their bodies, when all threads have pressed."""
     wait(thread)
-    for i in range(thread.own_apart[0], thread.own_apart[1]):
-        row = apart[i]
+    for i in range(thread.own_pending[0], thread.own_pending[1]):
+        row = pending[i]
         body, force, turning = bodies[row.body], read(row.force), read(row.moment)
         increase(body.force, force)
         increase(body.moment, turning)

@@ -55,7 +55,7 @@ class ThreadPool:
         self.threads, self.used, self.processor = threads, 1, 0.0
         self._most = all_threads() if threads is None else threads
         self._pool: ThreadPoolExecutor | None = None
-        self._pace: dict[int, float] = {}
+        self._step_times: dict[int, float] = {}
         self._calls = 0
         self._shared: tuple[Rows, Books, tuple[Thread, ...]] | None = None
 
@@ -86,17 +86,17 @@ class ThreadPool:
             shared, (alone,) = self._shared_by(1, system, books)
             found = steps(system, shared, samples, clock._replace(stop=stop), alone)
         if not isinstance(steps, Loop):  # which may have been compiled
-            self._pace[count] = (time.perf_counter() - begun) / max(1, found[0] - clock.step)
+            self._step_times[count] = (time.perf_counter() - begun) / max(1, found[0] - clock.step)
         return found
 
     def _choice(self, choices: tuple[int, ...], clock: Clock) -> tuple[int, int]:
         """How many threads take the next steps, and the step before which they stop: as many as were faster, and now
         and then the others, for a part of the steps."""
         self._calls += 1
-        untried = [count for count in choices if count not in self._pace]
+        untried = [count for count in choices if count not in self._step_times]
         if len(choices) == 1 or untried:
             return (untried or choices)[0], clock.stop
-        faster, slower = sorted(choices, key=self._pace.__getitem__)
+        faster, slower = sorted(choices, key=self._step_times.__getitem__)
         if self._calls % TRIED_AGAIN:
             return faster, clock.stop
         return slower, clock.step + max(1, (clock.stop - clock.step) // SHORT_TRY)

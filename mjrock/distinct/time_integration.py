@@ -21,7 +21,7 @@ from .memory import Memory, remember
 from .rows import MAY_BE_INFINITE, unsound
 from .search.contact_search import ContactSearch
 from .setup import Setup
-from .step_length import LEAD, TimeGrid
+from .step_length import STEPS_AHEAD, TimeGrid
 from .supports import move_supports
 from .system import Books, Samples, System
 from .thread_pool import ThreadPool
@@ -59,39 +59,62 @@ def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, thre
             loop gets such a row.
     """
     system, search, stop, memory = setup.system, setup.search, grid.last + 1, setup.memory
-    clock = Clock(0, grid.h, grid.every, 0, 0, grid.last, setup.ends, 0.0, (0.0,) * len(system.axes), grid.check)
-    clock = clock._replace(lead=LEAD if setup.step_length.looks_ahead(grid.h) else 0.0)
-    clock = clock._replace(drag=setup.drag, local=setup.local)
+    clock = clock_at_start(setup, grid)
     for table in system.links:
-        table.look_ahead(LEAD if setup.step_length.links_look_ahead(grid.h) else 0.0)
-    next_search, steps = 0, advance
+        table.look_ahead(STEPS_AHEAD if setup.step_length.links_look_ahead(grid.h) else 0.0)
     require_sound_rows(system)
-    if memory is not None:
-        clock, next_search = clock._replace(before=memory.before, pushed=memory.pushed), memory.until_search
-    at_once, ended, memory = max(1, FIRST_CALL // max(1, len(system.lines))), False, None
+    next_search, steps = 0 if memory is None else memory.until_search, advance
+    steps_per_call, ended, memory = max(1, FIRST_CALL // max(1, len(system.lines))), False, None
     with Bar("explicit steps", "s", grid.end) as bar, ThreadPool(threads) as pool:
         while clock.step < stop and not ended:
             if clock.step == grid.last:
-                memory = remember(setup.structure, system, clock, setup.blocks)
+                memory = remember(setup.structure, system, clock, setup.moving_blocks)
                 if search is not None:
                     memory = memory._replace(search=deepcopy(search.state), until_search=next_search - clock.step)
             if search is not None and clock.step == next_search:
-                system, books, valid = update_search(search, system, books, clock)
-                next_search = clock.step + valid
+                system, books, valid_steps = update_search(search, system, books, clock)
+                next_search = clock.step + valid_steps
             begun = time.perf_counter()
-            ahead = (next_search if search is not None else stop, clock.step + at_once)
-            clock = clock._replace(stop=min(stop if clock.step == grid.last else grid.last, *ahead))
-            step, row, ended = pool.run(steps, system, books, samples, clock)
+            until_search, until_pause = next_search if search is not None else stop, clock.step + steps_per_call
+            until_last = stop if clock.step == grid.last else grid.last
+            clock = clock._replace(stop=min(until_last, until_search, until_pause))
+            step, sample, ended = pool.run(steps, system, books, samples, clock)
             took = time.perf_counter() - begun
-            at_once = max(1, min(4 * at_once, int((step - clock.step + 1) * CALL_TIME / took)))
+            steps_per_call = max(1, min(4 * steps_per_call, int((step - clock.step + 1) * CALL_TIME / took)))
             bar.to(step * clock.h)
             if steps is advance:  # what a search replaces has the same types
                 steps = for_types_of(advance, system, books, samples, clock, pool.thread)
-            clock = clock._replace(step=step, row=row)
+            clock = clock._replace(step=step, sample=sample)
             for body in unsound(system.bodies)[:1].tolist():
                 moving = f"the motion of {setup.scene.bodies.names[body]}"
                 raise breakdown(next(broken_laws(setup, system), moving), step * clock.h)
-    return Integration(system, clock.step, clock.row, None if ended else memory, pool.used, pool.processor)
+    return Integration(
+        system=system,
+        steps=clock.step,
+        samples=clock.sample,
+        memory=None if ended else memory,
+        threads=pool.used,
+        processor=pool.processor,
+    )
+
+
+def clock_at_start(setup: Setup, grid: TimeGrid) -> Clock:
+    """The clock of a run before its first step."""
+    memory = setup.memory
+    still = (0.0,) * len(setup.system.axes)
+    return Clock(
+        h=grid.h,
+        steps_per_sample=grid.steps_per_sample,
+        stop=0,
+        last=grid.last,
+        ground_acceleration_before=still if memory is None else memory.ground_acceleration_before,
+        end_rotation=setup.end_rotation,
+        h_before=0.0 if memory is None else memory.h_before,
+        steps_per_check=grid.steps_per_check,
+        steps_ahead=STEPS_AHEAD if setup.step_length.looks_ahead(grid.h) else 0.0,
+        mass_damping=setup.mass_damping,
+        local_damping=setup.local_damping,
+    )
 
 
 def update_search(search: ContactSearch, system: System, books: Books, clock: Clock) -> tuple[System, Books, int]:
@@ -99,10 +122,10 @@ def update_search(search: ContactSearch, system: System, books: Books, clock: Cl
 
     Supports are where they are at the pose. The step that follows moves them there."""
     t, supports = clock.step * clock.h, system.supports
-    there = supports._replace(moved=supports.moved.copy(), moving=supports.moving.copy())
-    move_supports(there, t, clock.h if clock.step > 0 else clock.before)
+    at_pose = supports._replace(moved=supports.moved.copy(), moving=supports.moving.copy())
+    move_supports(at_pose, t, clock.h if clock.step > 0 else clock.h_before)
     try:
-        system, books, steps = search.update(system._replace(supports=there), books, t, clock.h)
+        system, books, steps = search.update(system._replace(supports=at_pose), books, t, clock.h)
     except ArithmeticError as error:
         raise breakdown(str(error), t) from None
     return system._replace(supports=supports), books, steps
@@ -119,7 +142,7 @@ def broken_laws(setup: Setup, system: System) -> Iterator[str]:
             springs[unsound(law.rows, law.endless)] = False
             for joint in law.rows["joint"][~springs & (law.rows["address"] != 0)].tolist():
                 yield f"the law {contacts.bonds[joint].name} of {contacts.joints[joint]}"
-    for table, names in zip(system.links, setup.names, strict=True):
+    for table, names in zip(system.links, setup.link_names, strict=True):
         if isinstance(table, OwnLinks):
             yield from (f"the law of {names[i]}" for i in unsound(table.rows, table.endless).tolist())
 
@@ -147,7 +170,7 @@ def warn_if_long(setup: Setup, grid: TimeGrid) -> None:
     seconds = stepping_seconds(grid.last, len(lines), sprung=sprung, in_space=len(setup.system.axes) == 3)
     if seconds < LONG_RUN:
         return
-    slowest = max(float((of["c"] / np.maximum(of["k"], 1e-300)).max(initial=0.0)) for of in (lines, *laws))
+    slowest = max(float((rows["c"] / np.maximum(rows["k"], 1e-300)).max(initial=0.0)) for rows in (lines, *laws))
     shorter = math.sqrt(1 + 2 * slowest / setup.step_length.limit)  # from h^2 K + 2 h C = 4 with C = c/k K
     if shorter > STRONG_DASHPOTS:
         warn_of(

@@ -35,7 +35,7 @@ class JointLoads(NamedTuple):
         sense: 1 where the body of a contact is above its joint or -1, shape (m,).
         fixed: number of the fixed block below each joint, or -1, shape (joints,).
         rest: centroids of the bodies at rest [m].
-        loads, held: see `KeptForces`.
+        loads, contact_reactions: see `KeptForces`.
     """
 
     steps: Integers
@@ -43,7 +43,7 @@ class JointLoads(NamedTuple):
     fixed: Integers
     rest: Array
     loads: Array
-    held: Array
+    contact_reactions: Array
 
 
 def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Mapping[str, Plastic]) -> Forces:
@@ -63,9 +63,16 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
     pose = steps.pose.reshape(len(steps.t), -1, scene.freedom.nq)
     ties = motion_of_ties(BodyMotion(case, steps.t, pose), plastic)
     of = chosen[sample]
-    pulled = {name: ties[name].force[of] for name in scene.links.sprung.names}
-    pulled |= dict(zip(scene.links.damped.names, -steps.record.damping[of].T, strict=True))
-    return forces_of(case, frames, KeptForces(steps.t[of], pose[of], loads.loads[sample], loads.held[sample], pulled))
+    of_links = {name: ties[name].force[of] for name in scene.links.sprung.names}
+    of_links |= dict(zip(scene.links.damped.names, -steps.record.damping[of].T, strict=True))
+    kept = KeptForces(
+        t=steps.t[of],
+        pose=pose[of],
+        loads=loads.loads[sample],
+        contact_reactions=loads.contact_reactions[sample],
+        links=of_links,
+    )
+    return forces_of(case, frames, kept)
 
 
 @compiled
@@ -90,4 +97,4 @@ def _gather(
             increase(load, scaled(into.sense[i], force))
             increase(load[len(axes) :], scaled(into.sense[i], moment(at, force)))
             if into.fixed[joint] >= 0:
-                increase(into.held[row, into.fixed[joint]], force)
+                increase(into.contact_reactions[row, into.fixed[joint]], force)

@@ -217,11 +217,11 @@ def _pairs(scene: Scene, rows: ContactRows) -> Iterator[str]:
     """The contacts."""
     for i, (point, face) in enumerate(zip(scene.contacts.point_names, scene.contacts.face_names, strict=True)):
         mu = scene.contacts.friction[i]
-        grip: dict[str, object] = {"condim": "1"}
+        of_friction: dict[str, object] = {"condim": "1"}
         if mu > 0:
-            grip = {"condim": "3", "friction": (mu, mu, 0, 0, 0), "solreffriction": rows.solreffriction[i]}
+            of_friction = {"condim": "3", "friction": (mu, mu, 0, 0, 0), "solreffriction": rows.solreffriction[i]}
         row = {"solref": rows.solref[i], "solimp": rows.solimp[i]}
-        yield "  " + tag("pair", name=point, geom1=point, geom2=face, **row, **grip)
+        yield "  " + tag("pair", name=point, geom1=point, geom2=face, **row, **of_friction)
 
 
 def _records(scene: Scene, newmark_beta: float) -> Iterator[str]:

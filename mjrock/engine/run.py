@@ -126,7 +126,7 @@ class EngineRun:
         strength = links.law["strength"]
         energy[broke] = (strength * links.law["ultimate"])[broke]
         lost = np.where(broke, 0.5 * strength**2 / links.law["k"], 0.0)
-        return plastic_of(self.scene, energy / strength, energy, when, lost)
+        return plastic_of(self.scene, elongation=energy / strength, energy=energy, broken=when, lost=lost)
 
     def stats(self) -> Settings:
         """Numbers of the steps and the contacts, for the `stats` of a response."""

@@ -66,13 +66,7 @@ def fitted_steps(
 
 
 def fixed_steps(
-    engine: Engine,
-    scene: Scene,
-    course: Course,
-    newmark_beta: float,
-    *,
-    coulomb: bool = False,
-    method: Method = METHOD,
+    engine: Engine, scene: Scene, course: Course, newmark_beta: float, *, coulomb: bool = False, method: Method = METHOD
 ) -> Steps:
     """Steps of one length, until the duration of the course, or a body lies on its face or has left another.
 

@@ -278,6 +278,6 @@ def pulling(moving: BodyMotion, tie: Anchored, before: float = 0.0) -> tuple[Fla
     if not law.holds:
         return np.ones(len(moving.t), dtype=bool), np.zeros(len(moving.t), dtype=bool)
     elongation = elongation_of(moving, tie)
-    yielded = law.drawn(elongation, before)
+    yielded = law.plastic_elongation(elongation, before)
     broken: Flags = yielded > law.ultimate
     return (elongation > yielded) & ~broken, broken

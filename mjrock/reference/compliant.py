@@ -68,7 +68,7 @@ def solve_compliant(
         >>> answer.outcome.value
         'at rest'
     """
-    given = locals().copy()
+    arguments = locals().copy()
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("contacts", contacts, Contacts)
     spacing = required_spacing(output_step, case.duration, 5e-4)
@@ -108,7 +108,7 @@ def solve_compliant(
             "atol": atol,
         },
     )
-    return recorded(response, given)
+    return recorded(response, arguments)
 
 
 class Solution(NamedTuple):

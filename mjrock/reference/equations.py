@@ -232,7 +232,7 @@ class Wall:
         force, _ = self.base_forces(y)
         return max(float(force[0]), float(force[-1]))
 
-    def grip(self, y: Array) -> tuple[float, float]:
+    def friction_height(self, y: Array) -> tuple[float, float]:
         """Height above the centroid of the point where friction acts [m], and its rate [m/s].
 
         It is at the lower edge, halfway between the two faces that overlap there.
@@ -276,7 +276,7 @@ class Wall:
     def sticking(self, t: float, y: Array, shaken: bool = True) -> Array:
         """Rates of the state of a wall whose lower edge does not slip."""
         rates = self.free(t, y, shaken)
-        above, rate = self.grip(y)
+        above, rate = self.friction_height(y)
         slipping = float(rates[3] + rates[5] * above + y[5] * rate)
         friction = -slipping / (1 / self.mass + above**2 / self.inertia)
         rates[3] += friction / self.mass
@@ -285,7 +285,7 @@ class Wall:
 
     def caught(self, y: Array) -> Array:
         """The state after friction has stopped the sliding of an edge."""
-        above, _ = self.grip(y)
+        above, _ = self.friction_height(y)
         impulse = -(y[3] + y[5] * above) / (1 / self.mass + above**2 / self.inertia)
         kick: Array = impulse * np.array([0, 0, 0, 1 / self.mass, 0, above / self.inertia])
         return y + kick

@@ -106,8 +106,8 @@ class KeptForces(NamedTuple):
         pose: as of a `Response`.
         loads: of each joint the force on what is above it [N] and its moment about the origin of the world [N m], shape
             (n, joints, 3), in space (n, joints, 6).
-        held: force of the contacts of each fixed block on what it carries [N], shape (n, blocks, d).
-        pulled: what each link pulls with [N], by its name, shape (n,).
+        contact_reactions: force of the contacts of each fixed block on what it carries [N], shape (n, blocks, d).
+        links: what each link pulls with [N], by its name, shape (n,).
         driven: force of each actuator [N], shape (n, actuators), or None without.
         guided: force and moment about its centroid of all but a guide on the block of each actuator [N, N m], shape
             (n, actuators, nv), or None without.
@@ -117,8 +117,8 @@ class KeptForces(NamedTuple):
     t: Array
     pose: Array
     loads: Array
-    held: Array
-    pulled: Mapping[str, Array]
+    contact_reactions: Array
+    links: Mapping[str, Array]
     driven: Array | None = None
     guided: Array | None = None
     damage: Array | None = None
@@ -139,7 +139,7 @@ def forces_of(case: AnyCase, frames: JointFrames, kept: KeptForces) -> Forces:
         bends = np.stack([-moment[..., 2], moment[..., 1]], axis=-1)
     acts = (normal != 0)[..., None]
     eccentricity = np.where(acts, bends, np.nan) / np.where(acts, normal[..., None], 1.0)
-    reactions = {name: kept.held[:, i].copy() for i, name in enumerate(frames.blocks)}
+    reactions = {name: kept.contact_reactions[:, i].copy() for i, name in enumerate(frames.blocks)}
     guides = guides_of(case, kept)
     add_links(case, kept, reactions)
     for guide in guides.values():
@@ -153,7 +153,7 @@ def forces_of(case: AnyCase, frames: JointFrames, kept: KeptForces) -> Forces:
         shear=shear.copy(),
         eccentricity=eccentricity,
         moment=moment,
-        links=dict(kept.pulled),
+        links=dict(kept.links),
         reactions=reactions,
         guides=guides,
         damage=damage,
@@ -177,7 +177,7 @@ def guides_of(case: AnyCase, kept: KeptForces) -> dict[str, Array]:
 def add_links(case: AnyCase, kept: KeptForces, reactions: dict[str, Array]) -> None:
     """Add the forces of links to the reactions of the blocks that they are anchored on, and to that of all anchors."""
     moving, blocks = BodyMotion(case, kept.t, kept.pose), case.blocks
-    for name, pulled in kept.pulled.items():
+    for name, pulled in kept.links.items():
         if name not in case.links:
             continue  # of a device that only explicit steps have
         link = case.links[name]

@@ -20,7 +20,7 @@ from ..scene.scene import Scene
 from ..scene.wall import wall_course, wall_scene
 from .ledger import Ledger
 from .motion import Motion, SampledMotion
-from .reading import BesidePoses, Reading, masonry_reading, wall_reading
+from .reading import ContactHistory, Reading, masonry_reading, wall_reading
 from .response import End, State
 
 RESIDUAL_OF_WALL = 0.05
@@ -71,7 +71,7 @@ class WallProblem:
         return wall_course(self.case, scene)
 
     def read(
-        self, scene: Scene, t: Array, motion: SampledMotion, *, released: bool, beside: BesidePoses | None = None
+        self, scene: Scene, t: Array, motion: SampledMotion, *, released: bool, history: ContactHistory | None = None
     ) -> Reading:
         """Impacts and peaks, see `wall_reading`."""
         return wall_reading(self.case, self.contacts, t, motion, released=released)
@@ -101,10 +101,10 @@ class MasonryProblem:
         return masonry_course(self.case, scene)
 
     def read(
-        self, scene: Scene, t: Array, motion: SampledMotion, *, released: bool, beside: BesidePoses | None = None
+        self, scene: Scene, t: Array, motion: SampledMotion, *, released: bool, history: ContactHistory | None = None
     ) -> Reading:
         """Openings, slidings and falls, see `masonry_reading`."""
-        return masonry_reading(self.case, scene, t, motion, beside)
+        return masonry_reading(self.case, scene, t, motion, history)
 
     def unpaid(self, ledger: Ledger, motion: Motion, scale: float) -> EnergyImbalance:
         """Energy [J] that has appeared or vanished."""

@@ -59,17 +59,17 @@ class Reading:
     stats: dict[str, float] = field(default_factory=dict)
 
 
-class BesidePoses(NamedTuple):
-    """Results beside the poses of a solver that finds all contacts.
+class ContactHistory(NamedTuple):
+    """What a solver that finds all contacts knows of them beside the poses.
 
     Args:
-        widest: the widest gap of each contact in any step [m], shape (m,).
-        left: whether blocks have left joints.
+        widest_gap: the widest gap of each contact in any step [m], shape (m,).
+        has_left_joints: whether blocks have left joints.
         cracked: when each mortared joint that cracked did [s], by its name, the first first.
     """
 
-    widest: Array
-    left: bool
+    widest_gap: Array
+    has_left_joints: bool
     cracked: Mapping[str, float]
 
 
@@ -77,22 +77,22 @@ def wall_reading(case: Case, contacts: Contacts, t: Array, motion: SampledMotion
     """Impacts, peaks and the ending of a wall. `released` is whether the motion starts with the release."""
     uplift, theta, omega = Uplift.from_case(case, contacts), motion.theta[:, 0], motion.velocity[:, 0, 2]
     rotation = RotationHistory(t, theta, omega, motion.energy)
-    history = rocking_history(case, rotation, uplift, released=released)
+    rocking = rocking_history(case, rotation, uplift, released=released)
     slip = motion.pose[:, 0, 0] - case.wall.pose(theta)[:, 0]
     return Reading(
         *ending(case, t, motion.pose[:, 0], motion.energy, uplift.energy, motion.velocity[-1, 0]),
-        rocking=Rocking(history.impacts, history.peaks),
+        rocking=Rocking(rocking.impacts, rocking.peaks),
         count=case.returning(theta),
-        peak_times=history.times,
+        peak_times=rocking.times,
         slip=slip / case.block.half_base,
         stats={"base_displacement": float(np.interp(case.duration, t, slip) - slip[0])},
     )
 
 
 def masonry_reading(
-    case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, beside: BesidePoses | None = None
+    case: MasonryCase, scene: Scene, t: Array, motion: SampledMotion, history: ContactHistory | None = None
 ) -> Reading:
-    """Openings, slidings and falls of masonry. Without `beside` blocks meet at the joints at rest alone, whose faces
+    """Openings, slidings and falls of masonry. Without `history` blocks meet at the joints at rest alone, whose faces
     have no end."""
     masonry, pose = case.masonry, motion.pose.reshape(len(t), -1)
     up = scene.freedom.translations - 1
@@ -103,22 +103,23 @@ def masonry_reading(
     sizes = np.array([np.linalg.norm(outline, axis=1).max() for outline in scene.bodies.outlines])
     standstill = Standstill.of(scene.bodies.names, sizes, t, motion.pose, liveliness(scene, motion.velocity[-1]))
     quiet, opening = bool(abs(motion.energy[-1]) < scene.rest_energies[2]), joints.opening.copy()
-    if beside is None:
+    if history is None:
         fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
-        past = past_support(case.rest_geometry, joints, lambda some: slips(case, scene, t[some], pose[some]))
+        past = past_support(case.rest_geometry, joints, lambda steps: slips(case, scene, t[steps], pose[steps]))
         place = overhang_message({name: far for name, far in past.items() if name not in fallen})
     else:
-        elsewhere = beside.left or bool(case.supports) or bool(case.actuators)  # energy at rest is another one there
+        # where blocks have moved, the energy at rest is another one
+        elsewhere = history.has_left_joints or bool(case.supports) or bool(case.actuators)
         quiet = quiet or (elsewhere and t[-1] > TIME_AT_REST)
-        gone = below_everything(masonry, case.supports, t, drop)
-        place = f" Below all fixed blocks, past the edge of any ground: {named(gone)}." if gone else ""
-        np.maximum.at(opening, scene.contacts.joint, beside.widest)
+        below_all = below_everything(masonry, case.supports, t, drop)
+        place = f" Below all fixed blocks, past the edge of any ground: {named(below_all)}." if below_all else ""
+        np.maximum.at(opening, scene.contacts.joint, history.widest_gap)
     end = min(float(t[-1]), case.duration)
-    outcome, message = masonry_ending(fallen, standstill, quiet, end, everywhere=beside is not None)
+    outcome, message = masonry_ending(fallen, standstill, quiet, end, everywhere=history is not None)
     return Reading(
         outcome,
         message + place,
-        joints=JointMotion(opening, joints.sliding, fallen, {} if beside is None else beside.cracked),
+        joints=JointMotion(opening, joints.sliding, fallen, {} if history is None else history.cracked),
         count=int(np.searchsorted(t, next(iter(fallen.values()), np.inf))),
         stats={"deepest": joints.deepest},
     )
@@ -129,9 +130,9 @@ def _fallen_from_faces(
 ) -> dict[str, float]:
     """When each block fell [s], where one that has slid off its joints counts as fallen, and one that ended the run."""
     slid_off = left_joints(case.masonry, t, joints.off)
-    both = {name: min(slid_off.get(name, np.inf), fallen.get(name, np.inf)) for name in slid_off | fallen}
+    first_fall = {name: min(slid_off.get(name, np.inf), fallen.get(name, np.inf)) for name in slid_off | fallen}
     early = t[-1] < case.duration - 0.5 * (t[-1] - t[-2:][0])  # fixed steps end with the one nearest to the duration
-    return in_order(both) or (_stopped_by(scene, motion.pose[-1], float(t[-1])) if early else {})
+    return in_order(first_fall) or (_stopped_by(scene, motion.pose[-1], float(t[-1])) if early else {})
 
 
 def _stopped_by(scene: Scene, last: Array, end: float) -> dict[str, float]:

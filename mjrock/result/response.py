@@ -549,8 +549,8 @@ class Response(NotebookPicture):
 
     def __repr__(self) -> str:
         if self.joints is None:
-            alpha = float(self.peak[0]) / self.of_wall[0].wall.alpha
-            motion = f"{len(self.impacts)} impacts, largest rotation {alpha:.3g} alpha"
+            peak_over_alpha = float(self.peak[0]) / self.of_wall[0].wall.alpha
+            motion = f"{len(self.impacts)} impacts, largest rotation {peak_over_alpha:.3g} alpha"
         else:
             motion = f"largest opening {self.opening.max(initial=0):.3g} m, "
             motion += f"{len(self.fallen)} of {len(self.bodies)} blocks fallen"

@@ -69,14 +69,14 @@ def write_answer(answer: Any, path: str | Path) -> Path:
         UserWarning: of what the file cannot hold, such as a function of the user; the rest is kept.
     """
     path, h5py = require_path("path", path), hdf5()
-    variables, held = variables_of(answer), dict[str, StoredArray]()
+    variables, arrays = variables_of(answer), dict[str, StoredArray]()
     places = {id(variable.values): name for name, variable in variables.items()}
 
     def keep(at: str, values: Any, of: type, field: str) -> str:
         if id(values) not in places:
             unit, text = unit_and_text(of, field)
             name = f"{GROUP}/arrays/{at.replace('/', '_')}"
-            held[name] = StoredArray(values, unit or ("SI" if values.dtype.names else "-"), f"{at}: {text or MEMORY}")
+            arrays[name] = StoredArray(values, unit or ("SI" if values.dtype.names else "-"), f"{at}: {text or MEMORY}")
             places[id(values)] = name
         return places[id(values)]
 
@@ -85,7 +85,7 @@ def write_answer(answer: Any, path: str | Path) -> Path:
     with h5py.File(path.name, "w", driver="core", backing_store=False, block_size=1 << 24, libver="v110") as file:
         file.attrs.update({"format": FORMAT, "format_version": FORMAT_VERSION, **attributes_of(answer)})
         _write_variables(file, variables)
-        _write_parts(file, held, {"class": name_of(type(answer)), **texts})
+        _write_parts(file, arrays, {"class": name_of(type(answer)), **texts})
         file.flush()
         image = file.id.get_file_image()
     with replacing(path) as partial:
@@ -99,23 +99,23 @@ def write_answer(answer: Any, path: str | Path) -> Path:
 def _write_variables(file: File, variables: Mapping[str, Variable]) -> None:
     """Write the arrays of the top with their dimensions."""
     for name, variable in variables.items():
-        made = _dataset(file, name, variable.values, variable.units, variable.text)
+        dataset = _dataset(file, name, variable.values, variable.units, variable.text)
         for axis, dim in enumerate(variable.dims):
             if dim == name:
-                made.make_scale(dim)
+                dataset.make_scale(dim)
                 continue
             if dim not in file:
                 _dataset(file, dim, np.arange(variable.values.shape[axis]), "-", "number").make_scale(dim)
-            made.dims[axis].attach_scale(file[dim])
-            made.dims[axis].label = dim
+            dataset.dims[axis].attach_scale(file[dim])
+            dataset.dims[axis].label = dim
 
 
-def _write_parts(file: File, held: Mapping[str, StoredArray], texts: Tree) -> None:
+def _write_parts(file: File, arrays: Mapping[str, StoredArray], texts: Tree) -> None:
     """Write the other arrays, the texts, and the checksums of all."""
-    for name, one in held.items():
-        made = _dataset(file, name, one.values, one.units, one.text)
-        for axis in range(made.ndim):
-            made.dims[axis].label = ("row", "column")[axis] if axis < 2 else f"axis_{axis}"
+    for name, array in arrays.items():
+        dataset = _dataset(file, name, array.values, array.units, array.text)
+        for axis in range(dataset.ndim):
+            dataset.dims[axis].label = ("row", "column")[axis] if axis < 2 else f"axis_{axis}"
     for name, tree in texts.items():
         lines = json.dumps(tree, indent=1, allow_nan=False)
         text = NUMBERS_IN_JSON.sub(lambda found: f"[{' '.join(found[1].split())}]", lines)
@@ -134,9 +134,9 @@ def _dataset(file: File, name: str, values: object, units: str, text: str) -> Da
     packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if large else {}
     if isinstance(values, np.ndarray) and values.dtype == object:
         packed["dtype"] = hdf5().string_dtype()
-    made = file.create_dataset(name, data=values, **packed)
-    made.attrs["units"], made.attrs["description"] = units, text
-    return made
+    dataset = file.create_dataset(name, data=values, **packed)
+    dataset.attrs["units"], dataset.attrs["description"] = units, text
+    return dataset
 
 
 def _checksum(values: Any) -> str:

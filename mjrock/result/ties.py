@@ -40,14 +40,14 @@ class Plastic(NamedTuple):
     start: float = 0.0
 
 
-def plastic_of(scene: Scene, *columns: Array, before: Array | float = 0.0) -> dict[str, Plastic]:
-    """Plastic elongation and energy of each link of a scene, from the fields of `Plastic` in their order, shape
-    (links,) each. Its `start` follows from the scene.
+def plastic_of(scene: Scene, **columns: Array) -> dict[str, Plastic]:
+    """Plastic elongation and energy of each link of a scene, from the fields of `Plastic`, shape (links,) each. Its
+    `start` follows from the scene.
     """
     links = scene.links.sprung
-    starts = scene.ties.reach - links.law["reach"]
-    rows = zip(links.names, *columns, np.broadcast_to(before, starts.shape), starts, strict=True)
-    return {name: Plastic(*map(float, values)) for name, *values in rows}
+    columns["start"] = scene.ties.reach - links.law["reach"]
+    rows = ({field: float(column[i]) for field, column in columns.items()} for i in range(len(links.names)))
+    return {name: Plastic(**row) for name, row in zip(links.names, rows, strict=True)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,23 +76,23 @@ def motion_of_ties(moving: BodyMotion, plastic: Mapping[str, Plastic]) -> dict[s
     return {name: _motion(moving, tie, plastic.get(name)) for name, tie in moving.case.springs.items()}
 
 
-def _motion(moving: BodyMotion, tie: Anchored, ended: Plastic | None) -> TieMotion:
+def _motion(moving: BodyMotion, tie: Anchored, at_end: Plastic | None) -> TieMotion:
     elongation, law, t = elongation_of(moving, tie), tie.law, moving.t
-    before = 0.0 if ended is None else ended.before
+    before = 0.0 if at_end is None else at_end.before
     if law.push > 0:
-        elongation = elongation - (0.0 if ended is None else ended.start)
-        drawn = law.drawn(elongation, before)
-        force = law.k * (elongation - drawn)
-        return TieMotion(elongation, drawn, force, float(np.abs(force).max()), math.inf)
-    broken = math.inf if ended is None else ended.broken
+        elongation = elongation - (0.0 if at_end is None else at_end.start)
+        plastic = law.plastic_elongation(elongation, before)
+        force = law.k * (elongation - plastic)
+        return TieMotion(elongation, plastic, force, float(np.abs(force).max()), math.inf)
+    broken = math.inf if at_end is None else at_end.broken
     pulls = t < broken
-    drawn = np.minimum(law.drawn(elongation, before), law.ultimate)
+    plastic = np.minimum(law.plastic_elongation(elongation, before), law.ultimate)
     if broken < math.inf:
-        drawn = np.where(pulls, drawn, law.ultimate)
-    force = np.where(pulls, np.clip(law.k * (elongation - drawn), 0.0, law.strength), 0.0)
-    elongation = np.where(pulls, np.maximum(elongation, drawn), np.nan)
-    spent = broken < math.inf or (ended is not None and ended.elongation > 0)
-    return TieMotion(elongation, drawn, force, law.strength if spent else float(force.max()), broken)
+        plastic = np.where(pulls, plastic, law.ultimate)
+    force = np.where(pulls, np.clip(law.k * (elongation - plastic), 0.0, law.strength), 0.0)
+    elongation = np.where(pulls, np.maximum(elongation, plastic), np.nan)
+    spent = broken < math.inf or (at_end is not None and at_end.elongation > 0)
+    return TieMotion(elongation, plastic, force, law.strength if spent else float(force.max()), broken)
 
 
 def elongation_of(moving: BodyMotion, tie: Anchored) -> Array:
@@ -116,8 +116,8 @@ def link_ends(case: AnyCase, link: Anchored) -> tuple[LinkEnd, LinkEnd]:
 def link_vector(moving: BodyMotion, tie: Anchored) -> Array:
     """Vector from the anchor of a link to its other end in a motion [m], shape (n, d)."""
     end, anchor = link_ends(moving.case, tie)
-    own, of_anchor = (moving.displaced(link_end.block, link_end.point[None])[:, 0] for link_end in (end, anchor))
-    return np.asarray(end.point - anchor.point + own - of_anchor)
+    moved, anchor_moved = (moving.displaced(each.block, each.point[None])[:, 0] for each in (end, anchor))
+    return np.asarray(end.point - anchor.point + moved - anchor_moved)
 
 
 def ties_message(plastic: Mapping[str, Plastic]) -> str:
@@ -129,18 +129,18 @@ def ties_message(plastic: Mapping[str, Plastic]) -> str:
     )
 
 
-def overdrawn(tie: Anchored, drawn: Plastic) -> bool:
+def overdrawn(tie: Anchored, plastic: Plastic) -> bool:
     """Whether a tie that never breaks was drawn out beyond PLAUSIBLE of its length."""
-    return tie.law.holds and tie.law.ultimate == math.inf and drawn.elongation > PLAUSIBLE * tie.span
+    return tie.law.holds and tie.law.ultimate == math.inf and plastic.elongation > PLAUSIBLE * tie.span
 
 
 def warn_of_ties(case: AnyCase, plastic: Mapping[str, Plastic]) -> None:
     """Warn of ties without an `ultimate` that were drawn out beyond PLAUSIBLE of their length."""
-    for name, drawn in plastic.items():
+    for name, yielded in plastic.items():
         length = case.links[name].span
-        if overdrawn(case.links[name], drawn):
+        if overdrawn(case.links[name], yielded):
             warn_of(
-                f"{name} was drawn out by {1e3 * drawn.elongation:.3g} mm, {drawn.elongation / length:.1%} of its "
+                f"{name} was drawn out by {1e3 * yielded.elongation:.3g} mm, {yielded.elongation / length:.1%} of its "
                 f"length of {length:g} m. A steel bar breaks at some {PLAUSIBLE:.0%}, and an anchor plate follows "
                 "less; give the tie the elongation up to which it holds as ultimate"
             )

@@ -52,7 +52,7 @@ def masonry_scene(case: MasonryCase) -> Scene:
         require_standing(case.masonry, case.passive)
     except ValueError as error:
         raise ValueError(f"{error}; settled=False in the case runs it as drawn, from springs without load") from None
-    return standing_masonry(case.masonry, case.passive)
+    return scene_of_masonry(case.masonry, case.passive)
 
 
 @lru_cache(maxsize=16)
@@ -84,7 +84,7 @@ def require_standing(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> None
 
     Blocks that only ties keep from falling are checked by the search for equilibrium alone.
     """
-    scene = standing_masonry(masonry, effects)
+    scene = scene_of_masonry(masonry, effects)
     try:
         pose = scene.at_rest
     except UnsettledError as error:
@@ -127,7 +127,7 @@ def unsettled(masonry: Masonry, effects: tuple[Effect, ...], pose: Array) -> Val
         masonry, effects: the masonry.
         pose: of its free blocks at the end of the search, shape (free, nq).
     """
-    scene = standing_masonry(masonry, effects)
+    scene = scene_of_masonry(masonry, effects)
     slide, joints = slippery(masonry)
     if slide:
         return ValueError(
@@ -172,7 +172,7 @@ def wedged(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> tuple[str, ...
     Friction would hold them if their joints were pressed together. The weight alone does not press joints enough that
     start without load, however stiff they are.
     """
-    scene = standing_masonry(masonry, effects)
+    scene = scene_of_masonry(masonry, effects)
     try:
         _ = scene.at_rest
     except UnsettledError as error:
@@ -198,7 +198,7 @@ def stands_on_stiff_joints(scene: Scene) -> bool:
 
 
 @lru_cache(maxsize=16)
-def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
+def scene_of_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
     """The scene of masonry, which all cases of it with the same effects share."""
     blocks, free, number = masonry.blocks, list(masonry.free), free_numbers(masonry.blocks)
     lines, table = _sorted(masonry.lines, number), masonry.table
@@ -259,7 +259,7 @@ def standing_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scen
 @lru_cache(maxsize=16)
 def drawn_masonry(masonry: Masonry, effects: tuple[Effect, ...] = ()) -> Scene:
     """The same scene with the blocks as drawn in the place of the pose of rest."""
-    scene = standing_masonry(masonry, effects)
+    scene = scene_of_masonry(masonry, effects)
     return replace(scene, settled=scene.potential.unmoved)
 
 

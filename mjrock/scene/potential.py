@@ -56,8 +56,8 @@ from .pattern import PairPattern
 NO_PRODUCTS: Array = np.empty((0, 3))
 """Of bodies of the plane, and of bodies of space whose axes are principal ones."""
 NO_PRODUCTS.setflags(write=False)
-BENT_AT_ONCE = 32768
-"""Springs whose geometric stiffness is made at once, which takes 150 MB in space [-]."""
+SPRINGS_PER_BATCH = 32768
+"""Springs whose geometric stiffness is computed together, which takes 150 MB in space [-]."""
 
 
 class Structure(NamedTuple):
@@ -180,7 +180,7 @@ class Potential:
     """The energy of a structure at rest at a pose of shape (n nq,), and its derivatives along the velocities."""
 
     structure: Structure
-    own: OwnSprings | None = None
+    own_springs: OwnSprings | None = None
 
     @cached_property
     def law(self) -> LawRows:
@@ -193,8 +193,8 @@ class Potential:
         """Which contacts and ties pull as they push, shape (m + t,): those with a bond in tension, or a law that
         pulls."""
         pulls = np.append(self.structure.places.tension > 0, np.zeros(len(self.structure.ties.k), dtype=bool))
-        if self.own is not None:
-            pulls[self.own.springs] = self.own.pulls
+        if self.own_springs is not None:
+            pulls[self.own_springs.springs] = self.own_springs.pulls
         return pulls
 
     def closed(self, openings: Array) -> Flags:
@@ -208,15 +208,15 @@ class Potential:
     def resting(self, openings: Array) -> tuple[Array, Array]:
         """Force [N] and energy [J] of each spring at its opening [m], shape (m + t,) each."""
         force, energy = resting(self.law, openings, self.bonded)
-        if self.own is not None:
-            force[self.own.springs], energy[self.own.springs] = self.own.answers(openings)
+        if self.own_springs is not None:
+            force[self.own_springs.springs], energy[self.own_springs.springs] = self.own_springs.answers(openings)
         return force, energy
 
     def springs_at(self, openings: Array) -> Array:
         """Stiffness of contacts and ties at their openings [N/m], shape (m + t,)."""
         springs = np.array(tangent_stiffness(self.law, np.maximum(-openings, 0.0)))
-        if self.own is not None:
-            springs[self.own.springs] = self.own.slopes(openings)
+        if self.own_springs is not None:
+            springs[self.own_springs.springs] = self.own_springs.slopes(openings)
         return springs
 
     @property
@@ -227,8 +227,8 @@ class Potential:
     def openings(self, pose: Array) -> Array:
         """Gaps of the contacts and slack of the ties [m], shape (m + t,)."""
         places, ties, masses = self.structure.places, self.structure.ties, self.structure.masses
-        values, none = np.empty(len(places.body) + len(ties.k)), np.zeros_like(masses)
-        _openings(places, ties, frames_of(pose, places.freedom), none, values)
+        values, still = np.empty(len(places.body) + len(ties.k)), np.zeros_like(masses)
+        _openings(places, ties, frames_of(pose, places.freedom), still, values)
         return values
 
     def pressed(self, pose: Array) -> Array:
@@ -290,8 +290,8 @@ class Potential:
     def _bodies(self) -> Integers:
         """The two bodies of each contact and then of each tie, shape (m + t, 2)."""
         places, links = self.structure.places, self.structure.ties.links
-        own = np.concatenate([places.body, links.body]).astype(np.int64)
-        return np.column_stack([own, np.concatenate([places.face_body, links.anchor_body]).astype(np.int64)])
+        own_springs = np.concatenate([places.body, links.body]).astype(np.int64)
+        return np.column_stack([own_springs, np.concatenate([places.face_body, links.anchor_body]).astype(np.int64)])
 
     def load(self, pose: Array) -> Array:
         """Generalised force of the weight and of the constant forces, shape (n nv,)."""
@@ -320,7 +320,7 @@ class Potential:
         """Stiffness of springs of k [N/m], shape (m + t,), at the openings' rates, shape (n nv, n nv)."""
         return sprung(self.rates(pose), springs)
 
-    def curvature(self, pose: Array, drag: Array | None = None, pushes: Array | None = None) -> csr_array:
+    def curvature(self, pose: Array, friction: Array | None = None, pushes: Array | None = None) -> csr_array:
         """Geometric stiffness: the second derivatives of the openings and slips, times the forces, shape (n nv, n nv).
 
         A spring that is pressed by g and whose gap has the second derivatives H adds -k g H, which is what the weight
@@ -330,51 +330,44 @@ class Potential:
 
         Args:
             pose: of shape (n nq,).
-            drag: friction on the bodies of the points along the tangential directions of `slip_rates` [N], shape
+            friction: on the bodies of the points along the tangential directions of `slip_rates` [N], shape
                 (m, directions), or None.
             pushes: those at the pose, if they are known.
         """
         places, ties = self.structure.places, self.structure.ties
         forces, masses = self.structure.forces, self.structure.masses
-        frames, none = frames_of(pose, places.freedom), np.zeros_like(masses)
+        frames, still = frames_of(pose, places.freedom), np.zeros_like(masses)
         pushes = self.pushes(pose) if pushes is None else pushes
-        drag = np.zeros((len(places.body), places.freedom.translations - 1)) if drag is None else drag
-        bends = pushes != 0
-        bends[: len(drag)] |= drag.any(axis=1)
-        which = np.flatnonzero(bends)
+        friction = np.zeros((len(places.body), places.freedom.translations - 1)) if friction is None else friction
+        has_force = pushes != 0
+        has_force[: len(friction)] |= friction.any(axis=1)
+        loaded = np.flatnonzero(has_force)
         parts = []
-        for start in range(0, max(len(which), 1), BENT_AT_ONCE):
-            some = which[start : start + BENT_AT_ONCE]
-            bent = np.zeros((len(some), 2 * places.freedom.nv, 2 * places.freedom.nv))
-            _curvatures(places, ties, frames, none, (pushes, drag), some, bent)
-            parts.append(of_pairs(bent, self._bodies[some], len(masses)))
+        for start in range(0, max(len(loaded), 1), SPRINGS_PER_BATCH):
+            batch = loaded[start : start + SPRINGS_PER_BATCH]
+            curvatures = np.zeros((len(batch), 2 * places.freedom.nv, 2 * places.freedom.nv))
+            _curvatures(places, ties, frames, still, (pushes, friction), batch, curvatures)
+            parts.append(of_pairs(curvatures, self._bodies[batch], len(masses)))
         of_springs = parts[0] if len(parts) == 1 else summed(parts)
         if not len(forces.body):
             return of_springs
         return csr_array(of_springs + _turning_forces(forces, frames, len(masses)))
 
-    def hessian(self, pose: Array) -> csr_array:
-        """Second derivatives of the energy, shape (n nv, n nv)."""
-        openings = self.openings(pose)
-        return self.stiffness(pose, np.where(self.closed(openings), self.springs_at(openings), 0.0)) + self.curvature(
-            pose
-        )
-
 
 def _turning_forces(forces: AppliedForces, frames: Array, unknowns: int) -> csr_array:
     """Second derivatives of the energy of the constant forces, shape (n nv, n nv)."""
     axes = forces.axes
-    bent, nv = np.zeros((unknowns, unknowns)) if len(axes) == 3 else np.zeros(0), velocities(axes)
-    turning = np.zeros(unknowns)
+    full, nv = np.zeros((unknowns, unknowns)) if len(axes) == 3 else np.zeros(0), velocities(axes)
+    diagonal = np.zeros(unknowns)
     for i, body in enumerate(forces.body):
         at, force = vector(forces.at, i, axes), vector(forces.force, i, axes)
         if len(axes) == 2:
-            turning[nv * body + 2] += dot(force, plus(at, rotation_change(frames, body, at)))
+            diagonal[nv * body + 2] += dot(force, plus(at, rotation_change(frames, body, at)))
         else:
             r, local = np.array(at), np.array(plus(force, inverse_rotation_change(frames, body, force)))
             part = slice(nv * body + 3, nv * body + 6)
-            bent[part, part] += r @ local * np.eye(3) - 0.5 * (np.outer(r, local) + np.outer(local, r))
-    return csr_array(diags_array(turning) if not bent.size else csr_array(bent))
+            full[part, part] += r @ local * np.eye(3) - 0.5 * (np.outer(r, local) + np.outer(local, r))
+    return csr_array(diags_array(diagonal) if not full.size else csr_array(full))
 
 
 @inlined
@@ -385,20 +378,20 @@ def _bodies(places: Places, ties: Ties, i: int) -> tuple[int, int]:
 
 
 @compiled
-def _openings(places: Places, ties: Ties, frames: Array, none: Array, values: Array) -> None:
+def _openings(places: Places, ties: Ties, frames: Array, still: Array, values: Array) -> None:
     for i in range(len(values)):
-        values[i] = opening(places, ties, i, frames, none, none).value
+        values[i] = opening(places, ties, i, frames, still, still).value
 
 
 @compiled
-def _rates(places: Places, ties: Ties, frames: Array, unit: Array, none: Array, rates: Array) -> None:
+def _rates(places: Places, ties: Ties, frames: Array, unit: Array, still: Array, rates: Array) -> None:
     nv = len(unit) // len(frames)
     for i in range(len(rates)):
         bodies = _bodies(places, ties, i)
         for side in range(2):
             for j in range(nv if bodies[side] >= 0 else 0):
                 unit[nv * bodies[side] + j] = 1.0
-                rates[i, side, j] = opening(places, ties, i, frames, unit, none).rate
+                rates[i, side, j] = opening(places, ties, i, frames, unit, still).rate
                 unit[nv * bodies[side] + j] = 0.0
 
 
@@ -436,20 +429,20 @@ def _curvatures(
     places: Places,
     ties: Ties,
     frames: Array,
-    none: Array,
+    still: Array,
     forces: tuple[Array, Array],
-    which: Integers,
+    springs: Integers,
     curvature: Array,
 ) -> None:
     """Write the geometric stiffness of some springs and of their friction, for the velocities of the first and then of
     the second body of each, shape (springs, 2 nv, 2 nv).
 
     What is quadratic in the velocities in the second rate of an opening is its second derivative along them."""
-    nv, unit, (push, drag) = len(none) // len(frames), none, forces
-    for slot, i in enumerate(which):
+    nv, unit, (push, friction) = len(still) // len(frames), still, forces
+    for slot, i in enumerate(springs):
         body, other = _bodies(places, ties, i)
         count = 2 * nv if other >= 0 else nv
-        if i < len(drag):
+        if i < len(friction):
             meets, tangents = meeting(places, i, frames), tangents_at(places, i, frames)
         for p in range(count):
             for r in range(p, count):
@@ -458,24 +451,24 @@ def _curvatures(
                 for sign in (1.0, -1.0):
                     unit[row] += 1.0
                     unit[column] += sign
-                    if i < len(drag):
-                        bent = push[i] * swept_along(places, i, meets, frames, unit, meets.normal)
-                        bent += swept_by_friction(places, i, meets, tangents, frames, unit, drag[i])
+                    if i < len(friction):
+                        power = push[i] * swept_along(places, i, meets, frames, unit, meets.normal)
+                        power += swept_by_friction(places, i, meets, tangents, frames, unit, friction[i])
                     else:
-                        bent = push[i] * slack(ties, i - len(drag), frames, unit, unit).swept
-                    curvature[slot, p, r] -= 0.25 * sign * bent
+                        power = push[i] * slack(ties, i - len(friction), frames, unit, unit).swept
+                    curvature[slot, p, r] -= 0.25 * sign * power
                     unit[row], unit[column] = 0.0, 0.0
                 curvature[slot, r, p] = curvature[slot, p, r]
 
 
 @inlined
 def swept_by_friction(
-    places: Places, i: int, meets: Meeting, tangents: tuple[Vector, ...], frames: Array, v: Array, drag: Array
+    places: Places, i: int, meets: Meeting, tangents: tuple[Vector, ...], frames: Array, v: Array, friction: Array
 ) -> float:
     """Friction times the second rates of slip, the part of it that is quadratic in the velocities."""
     power = 0.0
     for k in range(len(tangents)):
-        power += drag[k] * swept_along(places, i, meets, frames, v, tangents[k])
+        power += friction[k] * swept_along(places, i, meets, frames, v, tangents[k])
     return power
 
 

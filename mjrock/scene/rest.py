@@ -57,9 +57,6 @@ ENERGY_ROUNDING, RAISES, SMALLEST_PART = 1e-13, 1e-6, 1e-6
 """Rounding of the energy, over the weight of a body times a metre [-]; by how much a step of Newton's method may raise
 the energy, over itself, as friction acts halfway between point and face where slip is that of the point [-]; and the
 smallest part of a step that is tried."""
-BEGINNING = LOOSE, 1.0, SLIPPING, np.inf
-"""Where a search begins: stiffness that is lent to all motions, share of the shear stiffness of slipping contacts, its
-least value, and force that was missing before."""
 IMPERFECTION = 1e-5
 """Forces on all bodies by which a structure is no longer its own mirror image, over the largest that is missing [-]."""
 PUSH = 1e-2
@@ -115,6 +112,31 @@ class Search(NamedTuple):
     bar: Bar
 
 
+class LentStiffness(NamedTuple):
+    """Stiffness that a search lends to motions at a pose, as at its beginning.
+
+    Args:
+        loose: to every motion, over the largest [-].
+        share: share of its shear stiffness that a contact that slips lends along its slip [-].
+        least_share: the least of it [-].
+        missing: force that was missing at the pose before [N].
+    """
+
+    loose: float = LOOSE
+    share: float = 1.0
+    least_share: float = SLIPPING
+    missing: float = np.inf
+
+    def at_next(self, missing: float, *, slides: bool) -> LentStiffness:
+        """That at the next pose, where a force is missing [N]; with `slides` contacts that slip lend none."""
+        if slides:
+            return LentStiffness(LOOSE, 0.0, 0.0, missing)
+        if missing < self.missing:
+            loose, share = max(0.5 * self.loose, LEAST_LOOSE), max(0.5 * self.share, self.least_share)
+            return LentStiffness(loose, share, self.least_share, missing)
+        return LentStiffness(2 * self.loose, 1.0, min(RAISED * self.least_share, 1.0), missing)
+
+
 class Sliders(NamedTuple):
     """Springs of the contacts along their faces, each in series with a slider that has a limit of friction.
 
@@ -148,21 +170,21 @@ class PointFriction(NamedTuple):
     Args:
         pattern: of the stiffness.
         rates: of the slips for unit velocities of the two bodies, shape (directions, m, 2, nv).
-        drag: friction on the bodies of the points [N], shape (m, directions).
+        force: friction on the bodies of the points [N], shape (m, directions).
         stiffness: of the springs, and where a point slips its friction over its slip [N/m], shape (m,).
         slips: whether a point slips, shape (m,).
     """
 
     pattern: PairPattern
     rates: Array
-    drag: Array
+    force: Array
     stiffness: Array
     slips: Flags
 
     @property
     def generalised(self) -> Array:
         """Generalised force of the friction, shape (n nv,)."""
-        return np.sum([*map(self.pattern.forces, self.rates, self.drag.T)], axis=0)
+        return np.sum([*map(self.pattern.forces, self.rates, self.force.T)], axis=0)
 
     @property
     def slipping(self) -> Flags:
@@ -171,7 +193,7 @@ class PointFriction(NamedTuple):
 
     def along(self, slips: Flags) -> Array:
         """Rates of slip along the direction of friction, of the points that slip, shape (points, 2, nv)."""
-        directions = (self.drag[slips] / np.linalg.norm(self.drag[slips], axis=1)[:, None]).T
+        directions = (self.force[slips] / np.linalg.norm(self.force[slips], axis=1)[:, None]).T
         return np.asarray((directions[..., None, None] * self.rates[:, slips]).sum(axis=0))
 
 
@@ -257,7 +279,7 @@ def search_from(potential: Potential, search: Search, soft: float | None) -> Res
     k, freedom = potential.structure.places.k, potential.structure.places.freedom
     start = None if soft is None else search_pose(potential, search._replace(shear=soft * k))[0]
     pose, friction = search_pose(potential, search, start)
-    return RestState(pose.reshape(-1, freedom.nq), friction.drag)
+    return RestState(pose.reshape(-1, freedom.nq), friction.force)
 
 
 def settled_without_slip(potential: Potential) -> Array:
@@ -276,7 +298,7 @@ def search_pose(potential: Potential, search: Search, start: Array | None = None
     Raises:
         UnsettledError: if there is none within the number of poses.
     """
-    freedom, (loose, share, least, previous) = potential.structure.places.freedom, BEGINNING
+    freedom, lent = potential.structure.places.freedom, LentStiffness()
     least_missing, since = np.inf, 0  # the least force that has been missing, and at which pose it was
     trial, pushed = trial_at(potential, search, potential.unmoved if start is None else start, start is None), False
     for poses in range(POSES):
@@ -287,22 +309,15 @@ def search_pose(potential: Potential, search: Search, start: Array | None = None
                 return ending.pose, ending.friction
             if not pushed or balances(potential, search, trial):
                 trial, pushed = trial_at(potential, search, fallen_pose(potential, ending, direction)), True
-                loose, share, least, previous = BEGINNING
-                least_missing, since = np.inf, poses
+                lent, least_missing, since = LentStiffness(), np.inf, poses
         if trial.missing_sum < (1 - PROGRESS) * least_missing:
             least_missing, since = trial.missing_sum, poses
-        if poses - since >= SLIDES:
-            loose, share, least = LOOSE, 0.0, 0.0
-        elif trial.missing_sum < previous:
-            loose, share = max(0.5 * loose, LEAST_LOOSE), max(0.5 * share, least)
-        else:
-            loose, share, least = 2 * loose, 1.0, min(RAISED * least, 1.0)
-        previous = trial.missing_sum
+        lent = lent.at_next(trial.missing_sum, slides=poses - since >= SLIDES)
         springs = np.where(trial.closed, trial.springs, STIFFNESS_OF_OPEN * trial.springs)
-        stiffness = normal_stiffness(potential, trial, springs) + shear_stiffness(trial.friction, share)
-        motion = newton_motion(potential, stiffness, trial.missing + imperfection(potential, trial), loose)
+        stiffness = normal_stiffness(potential, trial, springs) + shear_stiffness(trial.friction, lent.share)
+        motion = newton_motion(potential, stiffness, trial.missing + imperfection(potential, trial), lent.loose)
         trial = trial_at(potential, search, lowering_step(potential, trial.pose, motion, trial.sliders))
-        if loose > MOST_LOOSE or poses - since >= STALLED or has_fallen(potential, trial.pose):
+        if lent.loose > MOST_LOOSE or poses - since >= STALLED or has_fallen(potential, trial.pose):
             break
     raise UnsettledError(trial.pose.reshape(-1, freedom.nq))
 
@@ -394,7 +409,7 @@ def normal_stiffness(potential: Potential, trial: Trial, springs: Array) -> Arra
 
 def curvature(potential: Potential, trial: Trial) -> csr_array:
     """Geometric stiffness of all forces at a pose, shape (n nv, n nv)."""
-    return potential.curvature(trial.pose, trial.sliders.shared(trial.friction.drag), trial.push)
+    return potential.curvature(trial.pose, trial.sliders.shared(trial.friction.force), trial.push)
 
 
 def newton_motion(potential: Potential, stiffness: Array, missing: Array, loose: float) -> Array:
@@ -480,11 +495,11 @@ def falling_direction(potential: Potential, search: Search, trial: Trial) -> Arr
     A contact that touches without force has no stiffness: the opposite motion opens it.
     """
     presses = (trial.push > tolerance(potential, trial.pose, search)) | potential.bonded
-    bent = curvature(potential, trial)
+    geometric = curvature(potential, trial)
     stiffness = normal_stiffness(potential, trial, np.where(presses, trial.springs, 0.0))
-    most = float(abs(bent).sum(axis=1).max())  # that the forces take from the stiffness
-    whole = stiffness + shear_stiffness(trial.friction, 1.0) + potential.pattern.taken(bent)
-    matrix = potential.pattern.matrix(whole)
+    most = float(abs(geometric).sum(axis=1).max())  # that the forces take from the stiffness
+    total = stiffness + shear_stiffness(trial.friction, 1.0) + potential.pattern.taken(geometric)
+    matrix = potential.pattern.matrix(total)
     if is_clearly_stable(matrix):
         return None
     lowest, direction = lowest_mode(matrix, most)

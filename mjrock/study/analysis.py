@@ -51,8 +51,8 @@ class WallSubject:
         case, by_theory = self.case, solver == "analytical"
         if (e if by_theory else contacts) is None:
             raise ValueError(f"the solver {solver} needs {'e' if by_theory else 'contacts'}")
-        if by_theory and e is not None and (doubt := e.doubt(case.wall, case.stop_top)):
-            warn_of(doubt, Implausible)
+        if by_theory and e is not None and (difference := e.difference_from(case.wall, case.stop_top)):
+            warn_of(difference, Implausible)
         if contacts is not None and not by_theory:
             contacts.require_fit(case.block, side_stop=case.one_sided)
 
@@ -180,12 +180,12 @@ class Analysis:
     @property
     def COLUMNS(self) -> tuple[str, ...]:
         """The columns of a row."""
-        own = tuple(f"{tie}_{name}" for tie in self.case.springs for name in TIE_COLUMNS)
+        columns = tuple(f"{tie}_{name}" for tie in self.case.springs for name in TIE_COLUMNS)
         if self.options.get("forces"):
-            own += ("largest_reaction_N",)
+            columns += ("largest_reaction_N",)
         names = ACTUATOR_COLUMNS if self.options.get("ledger") else ACTUATOR_COLUMNS[:1]
-        own += tuple(f"{jack}_{name}" for jack in self.case.actuators for name in names)
-        return (*subject_of(self.case).COLUMNS, "end_s", "message", *own)
+        columns += tuple(f"{jack}_{name}" for jack in self.case.actuators for name in names)
+        return (*subject_of(self.case).COLUMNS, "end_s", "message", *columns)
 
     @property
     def law(self) -> str:
@@ -219,8 +219,8 @@ class Analysis:
         values = subject_of(self.case).values(response, self.law)
         ending = float(response.t[-1]), response.message
         forces = () if response.kept_forces is None else (response.forces.largest_reaction,)
-        own = *_of_ties(response), *forces, *_of_actuators(response)
-        return dict(zip(self.COLUMNS, (*values, *ending, *own), strict=True))
+        further = *_of_ties(response), *forces, *_of_actuators(response)
+        return dict(zip(self.COLUMNS, (*values, *ending, *further), strict=True))
 
 
 def _of_ties(response: Response) -> Iterator[float | None]:

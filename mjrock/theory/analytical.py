@@ -70,17 +70,17 @@ def solve_analytical(
         >>> answer.outcome.value
         'at rest'
     """
-    given = locals().copy()
+    arguments = locals().copy()
     require_wall("case", case, "solve_explicit or simulate")
     require_kind("e", e, Restitution, ScatteredRestitution)
     spacing = required_spacing(output_step, case.duration)
     require_sample_count(case.duration / spacing)
     _require_solvable(case, e)
-    if unlike := e.doubt(case.wall, case.stop_top):
-        warn_of(unlike, Implausible)
+    if difference := e.difference_from(case.wall, case.stop_top):
+        warn_of(difference, Implausible)
     warn_if_still(case.is_still)
     watch = Stopwatch()
-    with first_answer(solve_analytical, **given):
+    with first_answer(solve_analytical, **arguments):
         motion = _rocking(case, e, rtol, rest)
         outcome = _outcome(case, motion)
         t_end = motion.end.t if outcome is Outcome.OVERTURNED else case.duration
@@ -101,7 +101,7 @@ def solve_analytical(
         message=describe(outcome, case, t_end, float(theta[-1])) + ties_message(plastic),
         stats={**watch.took(), "evaluations": motion.evaluations, "rtol": rtol},
     )
-    return recorded(response, given)
+    return recorded(response, arguments)
 
 
 @dataclass(frozen=True, eq=False)

@@ -270,7 +270,7 @@ def rocking_loop(
         new_theta, new_omega, k1, k3 = nystroem(loads, theta, omega, h)
         if k1 * k3 < 0 and omega * new_omega >= 0:
             middle = h * k1 / (k1 - k3)  # of the step's extreme velocity
-            if middle > 1e-6 * h and nystroem(loads, theta, omega, middle)[1] * new_omega < 0:
+            if middle > 1e-6 * h and nystroem(loads, theta, omega, middle).omega * new_omega < 0:
                 h = middle  # the wall turns, and turns again within the step
                 new_theta, new_omega, _, k3 = nystroem(loads, theta, omega, h)
         turned = omega * new_omega < 0
@@ -280,8 +280,8 @@ def rocking_loop(
             new_omega = 0.0
         hit, fell = side * new_theta <= 0, side * new_theta >= ON_ITS_FACE
         if hit or fell:
-            at_once = hit and theta == 0.0 and side * omega < 0  # released against its stop
-            h = 0.0 if at_once else time_of_end(UPRIGHT if hit else LYING, loads, theta, omega, h)
+            from_rest = hit and theta == 0.0 and side * omega < 0  # released against its stop
+            h = 0.0 if from_rest else time_of_end(UPRIGHT if hit else LYING, loads, theta, omega, h)
             _, new_omega, _, k3 = nystroem(loads, theta, omega, h)
             new_theta = 0.0 if hit else side * ON_ITS_FACE
         elif turned and side * omega > 0:

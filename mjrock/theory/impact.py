@@ -90,15 +90,15 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
     root = np.sqrt([m for i in masonry.free for m in (blocks[i].mass, blocks[i].mass, float(blocks[i].inertia))])
     opens = rates(blocks, ends, ends.normal).toarray() / root
     slips = rates(blocks, ends, ends.along).toarray()[::2] / root  # both ends of a joint slip alike
-    after, pressed, rubbed = _projected(root * before, opens, slips, masonry.joint_friction > 0)
+    after, normal, shear = _projected(root * before, opens, slips, masonry.joint_friction > 0)
     momentum = float(np.linalg.norm(root * before))
     after[np.abs(after) <= IMPACT_ROUNDING * momentum] = 0.0  # a block that stops has a velocity of exactly zero
-    widens = (opens @ after).reshape(-1, 2).max(axis=1) > IMPACT_ROUNDING * momentum / root.max()
+    opening = (opens @ after).reshape(-1, 2).max(axis=1) > IMPACT_ROUNDING * momentum / root.max()
     return RigidImpact(
         velocity=frozen((after / root).reshape(-1, 3)),
         kept=float(after @ after) / momentum**2,
-        opening=tuple(joint.name for joint, wide in zip(joints, widens, strict=True) if wide),
-        impulses=frozen(np.column_stack([pressed, rubbed])),
+        opening=tuple(joint.name for joint, wide in zip(joints, opening, strict=True) if wide),
+        impulses=frozen(np.column_stack([normal, shear])),
     )
 
 
@@ -144,12 +144,12 @@ def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple
 
     sticking, parted = rough & closed_in(before), np.zeros_like(rough)
     while True:
-        after, pressed, rubbed = _with_sticking(before, opens, slips, sticking)
+        after, normal, shear = _with_sticking(before, opens, slips, sticking)
         closed = closed_in(after)
         new = (sticking & (closed | parted)) | (rough & closed)
         if (new == sticking).all():
-            rubbed[np.abs(rubbed) <= impulse] = 0.0
-            return after, pressed, rubbed
+            shear[np.abs(shear) <= impulse] = 0.0
+            return after, normal, shear
         parted |= sticking & ~new
         sticking = new
 
@@ -161,10 +161,10 @@ def _with_sticking(before: Array, opens: Array, slips: Array, sticking: Flags) -
     rates[np.linalg.norm(rates, axis=1) <= IMPACT_ROUNDING * np.linalg.norm(opens, axis=1)] = (
         0.0  # ends that cannot move
     )
-    pressed, rubbed = _nearest(rates, free.T @ before), np.zeros(len(slips))
-    after = free @ (free.T @ (before + opens.T @ pressed))
-    rubbed[sticking] = np.linalg.lstsq(slips[sticking].T, after - before - opens.T @ pressed, rcond=None)[0]
-    return after, pressed.reshape(-1, 2), rubbed
+    normal, shear = _nearest(rates, free.T @ before), np.zeros(len(slips))
+    after = free @ (free.T @ (before + opens.T @ normal))
+    shear[sticking] = np.linalg.lstsq(slips[sticking].T, after - before - opens.T @ normal, rcond=None)[0]
+    return after, normal.reshape(-1, 2), shear
 
 
 def _nearest(opens: Array, before: Array) -> Array:
@@ -172,36 +172,36 @@ def _nearest(opens: Array, before: Array) -> Array:
 
     They minimise |before + opens' p|, by the active-set method of Lawson and Hanson. Ends that are pressed are found
     one by one, the one that penetrates fastest first, and their least squares are those of least norm: in a wall in
-    bond more ends can be pressed than the velocity tells apart.
+    bond more ends can be pressed than the velocity distinguishes.
 
     Raises:
         RuntimeError: if the search does not end.
     """
     sizes, scale = np.linalg.norm(opens, axis=1), float(np.linalg.norm(before))
-    pressed, active = np.zeros(len(opens)), np.zeros(len(opens), dtype=bool)
+    impulses, active = np.zeros(len(opens)), np.zeros(len(opens), dtype=bool)
     if scale == 0:
-        return pressed
+        return impulses
     sizes[sizes == 0] = 1.0
     rows, aim = opens / sizes[:, None], before / scale
-    spent = np.zeros(len(opens), dtype=bool)
+    excluded = np.zeros(len(opens), dtype=bool)
     for _ in range(MOST_CHANGES * len(opens)):
-        closing = np.where(active | spent, 0.0, rows @ (aim + pressed @ rows))
+        closing = np.where(active | excluded, 0.0, rows @ (aim + impulses @ rows))
         if closing.min() >= -EXACT:
-            return pressed * scale / sizes
+            return impulses * scale / sizes
         new = int(closing.argmin())
         active[new] = True
         while True:
-            wanted = np.zeros(len(opens))
-            wanted[active] = np.linalg.lstsq(rows[active].T, -aim, rcond=EXACT)[0]
-            falls = active & (wanted < 0)
-            if not falls.any():
+            trial = np.zeros(len(opens))
+            trial[active] = np.linalg.lstsq(rows[active].T, -aim, rcond=EXACT)[0]
+            negative = active & (trial < 0)
+            if not negative.any():
                 break
-            share = pressed[falls] / (pressed[falls] - wanted[falls])  # how far each may go before it pulls
-            pressed = pressed + share.min() * (wanted - pressed)
-            active[np.flatnonzero(falls)[share.argmin()]] = False
-            pressed[~active] = 0.0
-        spent[new] = not active[new]  # it closes by a rounding error
-        pressed = wanted
+            share = impulses[negative] / (impulses[negative] - trial[negative])  # of the change, until it pulls
+            impulses = impulses + share.min() * (trial - impulses)
+            active[np.flatnonzero(negative)[share.argmin()]] = False
+            impulses[~active] = 0.0
+        excluded[new] = not active[new]  # it closes by a rounding error
+        impulses = trial
     raise RuntimeError(
         f"no impulses were found in {MOST_CHANGES * len(opens)} changes of the set of ends that are pressed"
     )

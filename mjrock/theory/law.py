@@ -212,9 +212,18 @@ def acceleration(loads: Loads, after: float, theta: float, sine: float, cosine: 
     return total + acceleration_by_ties(toe, loads.ties, theta) if len(loads.ties.state) > 0 else total
 
 
+class RotationStep(NamedTuple):
+    """Rotation and angular velocity after a step, and the angular accelerations at its start and its end."""
+
+    theta: float
+    omega: float
+    acceleration_at_start: float
+    acceleration_at_end: float
+
+
 @inlined
-def nystroem(loads: Loads, theta: float, omega: float, h: float) -> tuple[float, float, float, float]:
-    """Rotation and velocity a time `h` later by Nystroem's fourth-order method, and the accelerations at both ends."""
+def nystroem(loads: Loads, theta: float, omega: float, h: float) -> RotationStep:
+    """A step of length `h` by Nystroem's fourth-order method."""
     sine, cosine = math.sin(theta), math.cos(theta)
     k1 = acceleration(loads, 0.0, theta, sine, cosine)
     delta = 0.5 * h * (omega + 0.25 * h * k1)
@@ -224,4 +233,4 @@ def nystroem(loads: Loads, theta: float, omega: float, h: float) -> tuple[float,
     sine_3, cosine_3 = turned_by(theta, sine, cosine, delta)
     k3 = acceleration(loads, h, theta + delta, sine_3, cosine_3)
     sixth = h / 6
-    return theta + h * (omega + sixth * (k1 + 2 * k2)), omega + sixth * (k1 + 4 * k2 + k3), k1, k3
+    return RotationStep(theta + h * (omega + sixth * (k1 + 2 * k2)), omega + sixth * (k1 + 4 * k2 + k3), k1, k3)

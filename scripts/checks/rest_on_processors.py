@@ -24,7 +24,7 @@ import mjrock as mr
 from mjrock.machine import kernels
 from mjrock.problem.masonry.limit.statics import falling
 from mjrock.quantities import Array
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 from scripts.shared import cli
 
 KERNELS = ("Haswell", "Nehalem", "SkylakeX", "Sandybridge")
@@ -81,7 +81,7 @@ def rest(seed: int, stiffest: float = STIFFEST) -> Rest | None:
     label, masonry = structure(seed, stiffest)
     if falling(masonry):
         return None
-    scene = standing_masonry(masonry)
+    scene = scene_of_masonry(masonry)
     try:
         pose, friction = scene.rest_state
     except ValueError as error:

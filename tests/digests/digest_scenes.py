@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 import mjrock as mr
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 
 K_N = 5e8
 RECORD = mr.GroundMotion.synthetic(peak=4.0, duration=1.0, seed=3)
@@ -206,7 +206,7 @@ def plain(one):
 
 def at_rest(masonry, effects, one):
     case = mr.MasonryCase(masonry(one), 1.0, effects=effects)
-    scene = standing_masonry(case.masonry, case.effects)
+    scene = scene_of_masonry(case.masonry, case.effects)
     pose, friction = scene.rest_state
     normal = scene.contacts.k * scene.bears
     return {

@@ -66,12 +66,20 @@ class Led:
     def move(self):
         """One step, at the end of which the forces are those of the new pose."""
         self.body["place"][0] = self.at
-        clock = Clock(1, self.h, 1, 0, 2, 10**9, np.inf, self.h, (0.0,) * len(self.at))
+        clock = Clock(
+            h=self.h,
+            steps_per_sample=1,
+            stop=2,
+            last=10**9,
+            ground_acceleration_before=(0.0,) * len(self.at),
+            step=1,
+            h_before=self.h,
+        )
         advance(self.system, self.books, self.samples, clock, self.threads)
 
     def forces(self):
         push = sum(table["push"].sum() for table in self.tables)
-        drag = sum(table["dragged"].sum(axis=0) for table in self.tables)
+        drag = sum(table["shear_force"].sum(axis=0) for table in self.tables)
         return push / AREA, drag[: len(self.at) - 1] / AREA
 
     @property

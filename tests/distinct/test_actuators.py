@@ -136,8 +136,8 @@ def test_an_actuator_of_all_blocks_drives_their_centroid(in_space):
     assert np.abs(answer.energy_residual).max() < 1e-3 * answer.ledger.largest
     shares = np.array([weight + 500.0 * mr.GRAVITY, weight]) / total
     moved = answer.pose[:, :, 0] @ shares
-    dragged = answer.ledger.dashpots["actuator_0"][-1]
-    work = np.trapezoid(force, moved) + 0.5 * force[-1] ** 2 / 1e8 + dragged
+    of_dashpot = answer.ledger.dashpots["actuator_0"][-1]
+    work = np.trapezoid(force, moved) + 0.5 * force[-1] ** 2 / 1e8 + of_dashpot
     assert answer.ledger.actuators["actuator_0"][-1] == pytest.approx(work, rel=0.005)
     assert moved[-1] == pytest.approx(0.02 - force[-1] / 1e8, rel=0.005)
 

@@ -60,7 +60,7 @@ def landing(d, h, c=0.0, fall=-0.5, k_s=math.inf):
         line.friction, line.k_s, line.body = 0.3, k_s, 0
     account, last = Books.empty(whole, 1), round(0.06 / h)
     samples = Samples.room(last + 1, whole, account, ledger=True)
-    clock = Clock(0, h, 1, 0, last + 1, last, math.inf, 0.0, (0.0,) * d)
+    clock = Clock(h=h, steps_per_sample=1, stop=last + 1, last=last, ground_acceleration_before=(0.0,) * d)
     assert loop.advance.py_func(whole, account, samples, clock, alone(whole)) == (last + 1, last + 1, False)
     assert whole.lines["depth"].max() == 0.0
     return samples.chosen(slice(-1)), whole.bodies["velocity"][0]

@@ -57,7 +57,7 @@ def test_dashpots_along_the_face_leave_out_what_holds(d, secant):
     line, bond = whole.lines[0], whole.laws[0].rows[0]
     meet = faces.where_friction_rubs(met(whole))
     slip = friction.along_face(meet.normal, faces.relative_velocity(whole.bodies, line, whole.supports, meet))
-    stretch, drags = friction.stretched(whole.bodies, line.face, bond.grip, meet.normal, H * np.array(slip)), []
+    stretch, drags = friction.stretched(whole.bodies, line.face, bond.shear_state, meet.normal, H * np.array(slip)), []
     for undamped in (0.0, 1.0):
         twin = copy_of(bond)
         twin.undamped = undamped
@@ -72,7 +72,7 @@ def test_dashpots_along_the_face_leave_out_what_holds(d, secant):
 @pytest.mark.parametrize("undamped", [0.0, 1.0])
 def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap, last, undamped):
     before = 30.0 if d == 2 else 30.0 * ALONG[3]
-    state = {"gap": last, "push": 80.0, "pressed": 7.0, "dragged": before, "grip": before / 1500.0}
+    state = {"gap": last, "push": 80.0, "dashpot_force": 7.0, "shear_force": before, "shear_state": before / 1500.0}
     whole, normal = bonded_line(d, face, gap, **state, undamped=undamped)
     line, bond, bodies = whole.lines[0], whole.laws[0].rows[0], whole.bodies
     meet = faces.where_friction_rubs(met(whole))
@@ -84,7 +84,7 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     pressed = -(1 - undamped) * C * twin.secant / K * rate
     pulled = pressed - twin.secant * gap
     dry = max(-rest * gap - C * rest / K * rate, 0.0) if gap < 0 else 0.0
-    stretch = friction.stretched(other.bodies, line.face, bond.grip, meet.normal, H * np.array(slip))
+    stretch = friction.stretched(other.bodies, line.face, bond.shear_state, meet.normal, H * np.array(slip))
     drag, taken = bonds.slide(other.bodies, line, twin, stretch, slip, pulled + dry)
     kept = books(whole)
     whole.laws[0].act(whole, kept, 0.0, H)
@@ -92,17 +92,17 @@ def test_a_bond_pulls_and_drags_by_its_law_and_books_what_it_takes(d, face, gap,
     assert bool(bond.secant < K) is (gap == 0.003)
     assert (line.k, line.c) == pytest.approx((rest, C * rest / K), rel=1e-9)
     assert (bond.push, bond.gap) == pytest.approx((pulled, gap), rel=1e-9)
-    assert bond.pressed == pytest.approx(pressed, rel=1e-9)
+    assert bond.dashpot_force == pytest.approx(pressed, rel=1e-9)
     assert line.widest == pytest.approx(max(gap, 0.0), rel=1e-9)
-    np.testing.assert_allclose(bond.dragged, drag, rtol=1e-9)
-    np.testing.assert_allclose(bond.grip, twin.grip, rtol=1e-9)
+    np.testing.assert_allclose(bond.shear_force, drag, rtol=1e-9)
+    np.testing.assert_allclose(bond.shear_state, twin.shear_state, rtol=1e-9)
     force = pulled * normal + friction.as_vector(meet.normal, drag)
     np.testing.assert_allclose(bodies["force"][1], force, rtol=1e-9)
     np.testing.assert_allclose(bodies["moment"][1], about(meet.arm, force), rtol=1e-9)
     against = -force if face == 0 else np.zeros(d)
     np.testing.assert_allclose(bodies["force"][0], against, rtol=1e-9)
     np.testing.assert_allclose(bodies["moment"][0], about(meet.face_arm, against), rtol=1e-9)
-    np.testing.assert_allclose(kept.dashpots, [0.0, -0.5 * H * (7.0 + bond.pressed) * rate], rtol=1e-9)
+    np.testing.assert_allclose(kept.dashpots, [0.0, -0.5 * H * (7.0 + bond.dashpot_force) * rate], rtol=1e-9)
     torn = 0.5 * last * gap * (K - twin.secant)
     assert taken > 0
     np.testing.assert_allclose(taken_by(kept), [torn, taken, 0.0], rtol=1e-9, atol=1e-12)
@@ -131,7 +131,7 @@ def test_works_of_bonds_add_up():
     once, twice = books(system(2)), books(system(2))
     for kept, count in ((once, 1), (twice, 2)):
         for _ in range(count):
-            whole, _ = bonded_line(2, "support", 0.003, gap=0.0005, push=80.0, grip=0.01)
+            whole, _ = bonded_line(2, "support", 0.003, gap=0.0005, push=80.0, shear_state=0.01)
             whole.laws[0].act(whole, kept, 0.0, H)
     assert abs(once.totals[0].friction) > 0
     for name in ("friction", "ground"):
@@ -151,12 +151,12 @@ def test_a_bond_that_has_torn_keeps_its_secant_and_presses_with_its_line(d):
     line.k, line.c = K - 3e5, C * (1 - 0.3)
     meet = faces.where_friction_rubs(met(whole))
     rate = np.dot(meet.normal, faces.relative_velocity(whole.bodies, line, whole.supports, meet))
-    bond.grip[:] = 1.0 if d == 2 else matrix(3, 0).T @ (matrix(3, 0) @ ALONG[3])
+    bond.shear_state[:] = 1.0 if d == 2 else matrix(3, 0).T @ (matrix(3, 0) @ ALONG[3])
     whole.laws[0].act(whole, books(whole), 0.0, H)
     assert bond.secant == 3e5
     assert bond.push == pytest.approx(3e5 * 0.003 - 0.3 * C * rate, rel=1e-9)
     whole_push = K * 0.003 - C * rate
-    assert np.linalg.norm(bond.dragged) == pytest.approx(0.2 * COHESION + 0.55 * whole_push, rel=1e-9)
+    assert np.linalg.norm(bond.shear_force) == pytest.approx(0.2 * COHESION + 0.55 * whole_push, rel=1e-9)
 
 
 @BOTH
@@ -170,12 +170,12 @@ def test_slip_takes_no_more_than_there_is_to_take(d, face, held):
     velocity = faces.relative_velocity(whole.bodies, line, whole.supports, meet)
     slip = np.array(friction.along_face(meet.normal, velocity))
     way = slip / np.linalg.norm(slip)
-    grip = held * limit / K_SHEAR * way
-    bond.dragged = -K_SHEAR * grip
-    bond.grip = matrix(3, 0).T @ grip if face == 0 and d == 3 else grip
+    shear_state = held * limit / K_SHEAR * way
+    bond.shear_force = -K_SHEAR * shear_state
+    bond.shear_state = matrix(3, 0).T @ shear_state if face == 0 and d == 3 else shear_state
     kept = books(whole)
     whole.laws[0].act(whole, kept, 0.0, H)
-    assert np.linalg.norm(bond.dragged) == pytest.approx(limit)
+    assert np.linalg.norm(bond.shear_force) == pytest.approx(limit)
     work = 0.5 * H * (held + 1) * limit * np.linalg.norm(slip)
     there = work - 0.5 * (1 - held**2) * limit**2 / K_SHEAR
     assert 0 < there < COHESION * (1 - bond.integrity) / WORN
@@ -192,7 +192,7 @@ def test_a_bond_holds_cohesion_and_friction_along_the_face(d, face, push, slides
     line, bond, way = whole.lines[0], whole.laws[0].rows[0], ALONG[d]
     turn, slip = np.eye(d) if face < 0 else matrix(d, 0), 0.3
     normal, along = turn @ NORMAL[d], turn @ way
-    bond.grip[:] = 0.004 if d == 2 else way * 0.004
+    bond.shear_state[:] = 0.004 if d == 2 else way * 0.004
     twin = copy_of(bond)
     twin.friction = 0.5 + 0.25 * 0.6
     limit = bonded_limit(twin, push)
@@ -200,12 +200,14 @@ def test_a_bond_holds_cohesion_and_friction_along_the_face(d, face, push, slides
     stretch = min(trial, limit / K_SHEAR)
     assert bool(stretch < trial) is slides
     slipped = (slip,) if d == 2 else tuple(slip * along)
-    elongation = friction.stretched(whole.bodies, line.face, bond.grip, tuple(normal), tuple(H * np.array(slipped)))
+    elongation = friction.stretched(
+        whole.bodies, line.face, bond.shear_state, tuple(normal), tuple(H * np.array(slipped))
+    )
     drag, taken = bonds.slide(whole.bodies, line, bond, elongation, slipped, push)
     assert bond.friction == pytest.approx(0.65)
     held = min(K_SHEAR * stretch + C_SHEAR * slip, limit)
     np.testing.assert_allclose(friction.as_vector(tuple(normal), drag), -held * along, rtol=1e-12, atol=1e-10)
-    np.testing.assert_allclose(bond.grip, stretch if d == 2 else stretch * way, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(bond.shear_state, stretch if d == 2 else stretch * way, rtol=1e-12, atol=1e-15)
     assert taken == pytest.approx(wear(twin, trial - stretch), rel=1e-12)
     assert bond.integrity == pytest.approx(twin.integrity, rel=1e-12)
 
@@ -216,7 +218,7 @@ def test_a_line_that_is_crushed_steps_back_by_what_it_closes(d, face):
     """The gap falls by the closing, and half the force times the way that the spring gave back is taken."""
     whole, _ = bonded_line(d, face, -0.003, strength=2000.0, crushing_rate=50.0, gap=-0.0015, k_s=1e5)
     line, bond = whole.lines[0], whole.laws[0].rows[0]
-    bond.grip[:] = 0.002 if d == 2 else 0.002 * ALONG[3]
+    bond.shear_state[:] = 0.002 if d == 2 else 0.002 * ALONG[3]
     twin, kept = copy_of(bond), books(whole)
     closing = crush(twin, met(whole).gap, 1e5 * 0.002)
     assert closing > 1e-4
@@ -258,8 +260,8 @@ def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
     )
     line, bond = whole.lines[0], whole.laws[0].rows[0]
     line.k, line.c, line.margin = (K - 2e4, 0.5 * C, math.inf) if tension else (K, C, 9.0)
-    grip, drag = (0.4, 0.3) if d == 2 else ([0.4, 0.1, -0.2], [0.3, -0.5, 0.6])
-    bond.grip[:], bond.dragged[:], line.grip[:] = grip, drag, 7.0
+    shear_state, drag = (0.4, 0.3) if d == 2 else ([0.4, 0.1, -0.2], [0.3, -0.5, 0.6])
+    bond.shear_state[:], bond.shear_force[:], line.shear_state[:] = shear_state, drag, 7.0
     kept = books(whole)
     bonds.make_dry(kept, line, bond)
     assert taken_by(kept)[0] == pytest.approx(0.5 * 2e4 * 0.003**2 if tension else 0.0)
@@ -268,13 +270,13 @@ def test_a_line_has_what_its_bond_leaves_when_it_has_gone(d, bears, tension):
         assert (bond.tension, bond.cohesion, bond.secant, bond.slip_rate) == (0.0, 0.0, 0.0, 0.0)
     if bears == math.inf:
         assert (bond.k, bond.push, line.friction) == (0.0, 0.0, 0.5)
-        np.testing.assert_array_equal(line.grip, grip)
-        np.testing.assert_array_equal(line.dragged, drag)
-        assert not bond.grip.any()
-        assert not bond.dragged.any()
+        np.testing.assert_array_equal(line.shear_state, shear_state)
+        np.testing.assert_array_equal(line.shear_force, drag)
+        assert not bond.shear_state.any()
+        assert not bond.shear_force.any()
     else:
         assert (bond.k, bond.push, line.friction) == (K, -60.0, 0.0)
-        np.testing.assert_array_equal(bond.grip, grip)
+        np.testing.assert_array_equal(bond.shear_state, shear_state)
 
 
 def test_a_closed_bond_that_goes_takes_nothing_more():
@@ -341,7 +343,7 @@ def test_bonds_store_what_secant_and_shear_spring_hold(d):
     whole = system(d, 2)
     table = whole.laws[0].rows
     table["secant"], table["gap"], table["k_s"] = [2e4, 3e4], [0.002, -0.001], [5e4, 6e4]
-    table["grip"] = [[0.001], [0.002]] if d == 2 else [[0.001, 0.002, 0.002], [0.0, 0.003, 0.004]]
+    table["shear_state"] = [[0.001], [0.002]] if d == 2 else [[0.001, 0.002, 0.002], [0.0, 0.003, 0.004]]
     squares = (1e-6, 4e-6) if d == 2 else (9e-6, 25e-6)
     along = 0.5 * (5e4 * squares[0] + 6e4 * squares[1])
     assert whole.laws[0].stored() == pytest.approx((0.5 * (2e4 * 4e-6 + 3e4 * 1e-6), along))
@@ -361,9 +363,9 @@ def test_the_bonds_of_masonry_have_the_strength_of_its_joints(space):
         np.testing.assert_allclose(table[name] / table[name].sum(), table["k"] / table["k"].sum())
     np.testing.assert_allclose(np.sort(table["margin"]), np.sort(dry.lines["margin"]))
     assert (table["friction"] == 0.75).all()
-    assert not table["grip"].any()
+    assert not table["shear_state"].any()
     assert len(table) == len(lines)
-    for name in ("k", "c", "friction", "grip"):
+    for name in ("k", "c", "friction", "shear_state"):
         assert not lines[name].any()
     assert (lines["margin"] == math.inf).all()
     for name, strength in (("tension", 0.25e6), ("cohesion", 0.35e6), ("strength", 10.5e6)):
@@ -448,17 +450,19 @@ def test_lines_that_are_handed_over_have_back_what_their_bond_has():
         "c": C,
         "friction": 0.6,
         "margin": 9.0,
-        "grip": 0.4,
-        "dragged": 0.3,
+        "shear_state": 0.4,
+        "shear_force": 0.3,
     }.items():
-        whole.laws[0].rows[name] = np.array(value)[:, None] if name in ("grip", "dragged") and np.ndim(value) else value
+        whole.laws[0].rows[name] = (
+            np.array(value)[:, None] if name in ("shear_state", "shear_force") and np.ndim(value) else value
+        )
     whole.laws[0].rows["secant"], whole.laws[0].rows["push"] = 2e5, 50.0
     whole.laws[0].release(whole.lines, np.array([True, False, True]))
     np.testing.assert_array_equal(whole.lines["k"], [0.5, 0.0, 0.0])
     for name, value in (("c", C), ("friction", 0.6), ("margin", 9.0)):
         assert whole.lines[name][0] == value
-    assert (whole.lines["grip"][0], whole.lines["dragged"][0]) == (0.4, 0.3)
-    for name in ("k", "secant", "grip", "dragged", "push"):
+    assert (whole.lines["shear_state"][0], whole.lines["shear_force"][0]) == (0.4, 0.3)
+    for name in ("k", "secant", "shear_state", "shear_force", "push"):
         assert not whole.laws[0].rows[name][0].any()
         assert whole.laws[0].rows[name][1].any()
     assert whole.laws[0].rows["secant"][2] == 2e5

@@ -193,9 +193,9 @@ def test_friction_gives_nothing_where_shear_springs_gain_as_lines_are_handed_ove
 
     def stretched(new, *others):
         honest(new, *others)
-        held = 0.5 * (new.rows["k_s"] * (new.rows["grip"].T ** 2).sum(axis=0)).sum()
+        held = 0.5 * (new.rows["k_s"] * (new.rows["shear_state"].T ** 2).sum(axis=0)).sum()
         if not gained and held > 0:
-            new.rows["grip"] *= 1.05
+            new.rows["shear_state"] *= 1.05
             gained.append((1.05**2 - 1) * held)
 
     monkeypatch.setattr(contact_search, "hand_over", stretched)

@@ -192,7 +192,7 @@ def pressed(whole, lead=0.0, h=H):
 def moving_line(d, face, gap, *, was=0.002, push=150.0, number=0, whole=None, **law):
     """A line that was closed at the pose before, and the rate of its gap and its slip at the pose."""
     whole = system(d) if whole is None else whole
-    law = {"k": K, "c": C, "depth": was, "push": push, "pressed": 7.0, "rate": -0.1, "group": 1} | law
+    law = {"k": K, "c": C, "depth": was, "push": push, "dashpot_force": 7.0, "rate": -0.1, "group": 1} | law
     normal = put_line(whole, face, gap, number=number, **law)
     meet = faces.where_friction_rubs(met(whole, number))
     over = faces.relative_velocity(whole.bodies, whole.lines[number], whole.supports, meet)
@@ -211,7 +211,7 @@ def test_a_line_presses_both_bodies_by_the_law(d, face):
     line, bodies = whole.lines[0], whole.bodies
     assert counts == (0, 0)
     assert (line.push, line.rate, line.depth) == pytest.approx((push, rate, 0.003), rel=1e-9)
-    assert (line.pressed, line.past, line.widest) == (pytest.approx(push - 300.0, rel=1e-9), 0, 0.0)
+    assert (line.dashpot_force, line.past, line.widest) == (pytest.approx(push - 300.0, rel=1e-9), 0, 0.0)
     np.testing.assert_allclose(bodies["force"][1], push * np.array(meet.normal), rtol=1e-9)
     np.testing.assert_allclose(bodies["moment"][1], about(meet.arm, push * np.array(meet.normal)), rtol=1e-9)
     other = -push * np.array(meet.normal) if face == 0 else np.zeros(d)
@@ -228,7 +228,7 @@ def test_a_line_presses_both_bodies_by_the_law(d, face):
 def test_friction_of_a_spring_acts_halfway_and_its_work_is_booked(d, face):
     gap, spring = -0.003, {"k_s": 4e4, "c_s": 20.0, "friction": 0.5}
     last = 3.0 if d == 2 else 3.0 * ALONG[3]
-    whole, meet, rate, slip = moving_line(d, face, gap, dragged=last, **spring)
+    whole, meet, rate, slip = moving_line(d, face, gap, shear_force=last, **spring)
     twin = system(d)
     put_line(twin, face, gap, k=K, **spring)
     along = friction.along_face(meet.normal, tuple(slip))
@@ -236,8 +236,8 @@ def test_friction_of_a_spring_acts_halfway_and_its_work_is_booked(d, face):
     kept, counts = pressed(whole)
     line, bodies = whole.lines[0], whole.bodies
     assert counts == (0, 0)
-    np.testing.assert_allclose(line.dragged, drag, rtol=1e-9)
-    np.testing.assert_allclose(line.grip, twin.lines[0].grip, rtol=1e-9)
+    np.testing.assert_allclose(line.shear_force, drag, rtol=1e-9)
+    np.testing.assert_allclose(line.shear_state, twin.lines[0].shear_state, rtol=1e-9)
     force = line.push * np.array(meet.normal) + friction.as_vector(meet.normal, drag)
     np.testing.assert_allclose(bodies["force"][1], force, rtol=1e-9)
     np.testing.assert_allclose(bodies["moment"][1], about(meet.arm, force), rtol=1e-9)
@@ -274,7 +274,7 @@ def test_lines_that_stick_rigidly_are_listed(d):
 @pytest.mark.parametrize("size", [1.0, 1e-3])
 def test_a_dashpot_looks_ahead_where_it_presses_before_and_after(d, size):
     for was, ahead in ((150.0 * size, True), (0.0, False)):
-        whole, _, rate, _ = moving_line(d, 0, -0.003, push=was, pressed=0.0, depth=0.002, k=K * size, c=C * size)
+        whole, _, rate, _ = moving_line(d, 0, -0.003, push=was, dashpot_force=0.0, depth=0.002, k=K * size, c=C * size)
         line = whole.lines[0]
         push = max((300.0 - C * rate) * size, 0.0)
         assert push > 0
@@ -288,13 +288,13 @@ def test_a_dashpot_looks_ahead_where_it_presses_before_and_after(d, size):
 @BOTH
 def test_a_line_that_stays_open_keeps_its_widest_gap(d):
     whole, _, _, _ = moving_line(
-        d, -1, 0.004, was=0.0, push=0.0, pressed=0.0, grip=3.0, widest=0.001, k_s=1e5, friction=0.5
+        d, -1, 0.004, was=0.0, push=0.0, dashpot_force=0.0, shear_state=3.0, widest=0.001, k_s=1e5, friction=0.5
     )
     kept, counts = pressed(whole)
     line = whole.lines[0]
     assert counts == (0, 0)
     assert line.widest == pytest.approx(max(0.001, met(whole).gap))
-    assert not line.grip.any()
+    assert not line.shear_state.any()
     assert not whole.bodies["force"].any()
     assert not kept.dashpots.any()
     assert line.rate == -0.1  # it is not looked at
@@ -322,9 +322,9 @@ def test_a_line_past_its_end_is_not_open():
 def test_a_line_that_meets_or_leaves_its_face_is_touched(d, was, push, gap, before):
     whole = system(d, 2)
     whole.bodies["velocity"][1] += (1.0 if gap > 0 else -1.0) * matrix(d, 0) @ NORMAL[d]
-    friction_law = {"k_s": 1e5, "c_s": 1.0, "friction": 0.5, "dragged": 2.0, "grip": 0.0}
+    friction_law = {"k_s": 1e5, "c_s": 1.0, "friction": 0.5, "shear_force": 2.0, "shear_state": 0.0}
     _, meet, rate, slip = moving_line(
-        d, 0, gap, was=was, push=push, pressed=0.0, number=1, whole=whole, rate=before, **friction_law
+        d, 0, gap, was=was, push=push, dashpot_force=0.0, number=1, whole=whole, rate=before, **friction_law
     )
     twin = system(d, 2)
     put_line(twin, 0, gap, number=1, k=K, c=C, depth=was, push=push, rate=before, **friction_law)
@@ -342,9 +342,11 @@ def test_a_line_that_meets_or_leaves_its_face_is_touched(d, was, push, gap, befo
     assert counts == (0, 1 if line.due else 0)
     assert kept.touched[0] == (1 if line.due else 0)
     assert line.push == pytest.approx(expected, rel=1e-9, abs=1e-12)
-    assert line.pressed == pytest.approx(expected - sprung if gap < 0 or expected < 0 else 0.0, rel=1e-9, abs=1e-12)
+    assert line.dashpot_force == pytest.approx(
+        expected - sprung if gap < 0 or expected < 0 else 0.0, rel=1e-9, abs=1e-12
+    )
     assert line.depth == pytest.approx(max(-gap, 0.0))
-    np.testing.assert_allclose(line.dragged, drag, rtol=1e-9)
+    np.testing.assert_allclose(line.shear_force, drag, rtol=1e-9)
     np.testing.assert_allclose(kept.dashpots[1], -0.5 * H * (expected - sprung) * rate, rtol=1e-9, atol=1e-15)
 
 
@@ -353,7 +355,7 @@ def test_no_line_touches_twice(d):
     whole = system(d, 2)
     whole.bodies["velocity"][1] -= matrix(d, 0) @ NORMAL[d]
     for number in range(2):
-        moving_line(d, 0, -0.0002, was=0.0, push=0.0, pressed=0.0, number=number, whole=whole)
+        moving_line(d, 0, -0.0002, was=0.0, push=0.0, dashpot_force=0.0, number=number, whole=whole)
     kept, counts = pressed(whole)
     assert counts == (0, 2)
     assert list(kept.touched) == [0, 1]

@@ -23,7 +23,7 @@ def test_shear_springs_of_lines_and_bonds_hold_half_of_k_s_times_the_square_of_t
     none = np.zeros(0, dtype=np.int64)
     whole, ways = system(d, 3), np.array([[0.2], [-0.3], [0.5]]) if d == 2 else np.array([[0.2, 0.1, -0.4]] * 3)
     for table, k_s in ((whole.lines, [2e3, np.inf, 5e3]), (whole.laws[0].rows, [7e3, 3e3, np.inf])):
-        table["k_s"], table["grip"] = k_s, ways
+        table["k_s"], table["shear_state"] = k_s, ways
     squares = (ways**2).sum(axis=1)
     expected = 0.5 * (2e3 * squares[0] + 5e3 * squares[2] + 7e3 * squares[0] + 3e3 * squares[1])
     assert account(whole, none, np.zeros(0)).sheared == pytest.approx(expected, rel=1e-12)

@@ -10,6 +10,7 @@ from mjrock.distinct import force_record
 from mjrock.distinct.contacts import faces
 from mjrock.distinct.kinds.mortar import Bonds
 from mjrock.distinct.system import Samples
+from mjrock.result.forces import ForceCounts
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 NORMAL = {2: np.array([0.6, 0.8]), 3: np.array([0.48, 0.6, 0.64])}
@@ -42,8 +43,10 @@ def held(d, bonds=0):
         line.between = -0.002 * turn @ NORMAL[d] - own + over
         if i < 3:
             line.push, line.depth, line.k_s = 10.0 + i, 0.002, 1e6
-            line.dragged = along(d, 2.0 + i)
-    samples = Samples.room(1, whole, books(whole)).with_forces(JOINTS, 2, 2)
+            line.shear_force = along(d, 2.0 + i)
+    samples = Samples.room(1, whole, books(whole)).with_forces(
+        ForceCounts(joints=JOINTS, fixed=2, links=0, actuators=2)
+    )
     return whole, samples
 
 
@@ -73,7 +76,7 @@ def test_forces_of_lines_are_summed_by_joint_block_and_actuator(d):
         if p == 0:
             guided[1] -= np.concatenate([force, about(face_arm, force)])
     np.testing.assert_allclose(samples.loads[0], loads, rtol=1e-10)
-    np.testing.assert_allclose(samples.held[0], blocks, rtol=1e-10)
+    np.testing.assert_allclose(samples.contact_reactions[0], blocks, rtol=1e-10)
     np.testing.assert_allclose(samples.guided[0], guided, rtol=1e-10)
     np.testing.assert_array_equal(samples.damage[0], 0.0)
 
@@ -84,7 +87,7 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
     whole, samples = held(d, bonds=3)
     for p in (0, 1):
         bond = whole.laws[0].rows[p]
-        bond.k, bond.push, bond.dragged = 0.5, -30.0 - p, along(d, 0.5)
+        bond.k, bond.push, bond.shear_force = 0.5, -30.0 - p, along(d, 0.5)
     whole.laws[0].rows["integrity"], whole.laws[0].rows["share"] = [0.75, 0.5, 0.25], [1.0, 0.5, 0.25]
     line = whole.lines[1]
     line.push = line.depth = 0.0
@@ -93,14 +96,14 @@ def test_a_bonded_line_has_the_force_of_its_bond_too(d):
     one, other, dry = acting(whole, 0, -20.0, 2.5)[0], acting(whole, 1, -31.0, 3.5)[0], acting(whole, 2, 12.0, 4.0)[0]
     np.testing.assert_allclose(samples.loads[0, 1, :d], one, rtol=1e-10)
     np.testing.assert_allclose(samples.loads[0, 0, :d], dry - other, rtol=1e-10)
-    np.testing.assert_allclose(samples.held[0], [dry, other], rtol=1e-10)
+    np.testing.assert_allclose(samples.contact_reactions[0], [dry, other], rtol=1e-10)
     np.testing.assert_allclose(samples.damage[0], [0.5 * 0.5 + 0.25 * 0.75, 0.25])
 
 
 @BOTH
 def test_without_room_nothing_is_kept(d):
     whole, samples = held(d)
-    samples = samples.with_forces(JOINTS, 0, 2)
+    samples = samples.with_forces(ForceCounts(joints=JOINTS, fixed=0, links=0, actuators=2))
     force_record.record_forces(whole, samples, 0)
     assert not samples.loads.any()
     assert not samples.guided.any()
@@ -111,8 +114,8 @@ def test_without_room_nothing_is_kept(d):
 def test_friction_of_a_line_that_sticks_is_that_of_its_impulse_and_of_what_dragged_it_as_it_left(d, face):
     whole, _ = held(d)
     line = whole.lines[0]
-    line.face, line.dragged = face, along(d, 2.0)
-    line.grip = along(d, 0.5)
+    line.face, line.shear_force = face, along(d, 2.0)
+    line.shear_state = along(d, 0.5)
     assert force_record.total_friction(whole, line) == pytest.approx(tuple(along(d, 2.0)))
     line.k_s = math.inf
     turned = matrix(3, 0) @ ALONG[3] if d == 3 and face == 0 else ALONG[d]

@@ -99,17 +99,17 @@ def test_a_shear_spring_and_its_dashpot_hold_what_the_face_holds(d, face, push, 
     slip, turn = 0.3 * way, np.eye(d) if face < 0 else matrix(d, 0)
     start = 0.01 * (way + 0.2 * NORMAL[d]) / math.sqrt(1.04)
     if d == 2:
-        line.grip[0], passed = 0.01, (0.3,)
+        line.shear_state[0], passed = 0.01, (0.3,)
     else:
-        line.grip[:], passed = turn.T @ start, tuple(slip)
+        line.shear_state[:], passed = turn.T @ start, tuple(slip)
     drag = friction.sprung_friction(whole.bodies, line, tuple(NORMAL[d]), passed, push, time)
     limit = 0.5 * push
     stretch = min(0.01 + 0.3 * time, limit / 200.0)
     assert (stretch < 0.01 + 0.3 * time) is slides
     held = min(200.0 * stretch + 3.0 * 0.3, limit)
     np.testing.assert_allclose(friction.as_vector(tuple(NORMAL[d]), drag), -held * way, rtol=1e-12, atol=1e-14)
-    grip = line.grip * way if d == 2 else turn @ line.grip
-    np.testing.assert_allclose(grip, stretch * way, rtol=1e-12, atol=1e-16)
+    shear_state = line.shear_state * way if d == 2 else turn @ line.shear_state
+    np.testing.assert_allclose(shear_state, stretch * way, rtol=1e-12, atol=1e-16)
 
 
 @BOTH
@@ -120,7 +120,7 @@ def test_a_dashpot_that_is_larger_than_what_the_face_holds_stretches_no_spring(d
     slip = (0.3,) if d == 2 else tuple(0.3 * way)
     drag = friction.sprung_friction(whole.bodies, line, tuple(NORMAL[d]), slip, 4.0, 1e-3)
     assert math.hypot(*drag) == pytest.approx(2.0)
-    assert np.linalg.norm(line.grip) == pytest.approx(0.3e-3)
+    assert np.linalg.norm(line.shear_state) == pytest.approx(0.3e-3)
 
 
 @BOTH
@@ -128,9 +128,9 @@ def test_a_dashpot_that_is_larger_than_what_the_face_holds_stretches_no_spring(d
 def test_friction_of_the_last_step_is_that_of_the_spring_or_of_rigid_lines(d, face):
     whole = system(d)
     line, spring = whole.lines[0], (0.7,) if d == 2 else (0.7, -0.2, 0.4)
-    line.face, line.grip[:] = face, 2.0 if d == 2 else [2.0, -1.0, 0.5]
+    line.face, line.shear_state[:] = face, 2.0 if d == 2 else [2.0, -1.0, 0.5]
     found = friction.last_friction(whole.bodies, line, spring)
-    turned = line.grip if d == 2 or face < 0 else matrix(d, 0) @ line.grip
+    turned = line.shear_state if d == 2 or face < 0 else matrix(d, 0) @ line.shear_state
     np.testing.assert_allclose(found, turned, rtol=1e-13)
     line.k_s = 1e6
     assert friction.last_friction(whole.bodies, line, spring) == spring
@@ -189,7 +189,7 @@ def test_the_ways_of_a_rigid_line_know_what_an_impulse_does(d, on_face):
 def test_a_rigid_line_begins_with_the_friction_of_the_last_step(d, on_face, held, size):
     whole = rigid(d, on_face)
     line, way = whole.lines[0], tangential(d)
-    line.grip[:] = 4.0 if d == 2 else 4.0 * (matrix(3, 0).T @ way if on_face else way)
+    line.shear_state[:] = 4.0 if d == 2 else 4.0 * (matrix(3, 0).T @ way if on_face else way)
     friction.begin(whole, line, 0, held, KICK, whole.axes)
     np.testing.assert_allclose(
         whole.tangents["impulse"] @ whole.tangents["direction"], KICK * size * way, rtol=1e-12, atol=1e-16
@@ -304,7 +304,7 @@ def test_lines_stick_together_and_keep_their_friction(d, held):
     after = [friction.slip_along(whole, row) for row in whole.tangents]
     impulses = whole.tangents["impulse"].reshape(-1, d - 1)
     np.testing.assert_array_less(np.linalg.norm(impulses, axis=1), KICK * held * (1 + 1e-12))
-    grips = whole.lines["grip"]
+    grips = whole.lines["shear_state"]
     pushed = np.einsum("ij,ijk->ik", impulses, whole.tangents["direction"].reshape(len(active), d - 1, d))
     on_face = whole.lines["face"] >= 0
     turned = grips[on_face] if d == 2 else grips[on_face] @ matrix(3, 0).T

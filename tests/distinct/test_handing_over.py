@@ -266,7 +266,7 @@ def line_at(whole, number, face, other, **law):
 
 def in_world(line, d):
     """What a line keeps along its face, in the axes of the world; a number along the tangent in the plane."""
-    return line.grip if d == 2 or line.face < 0 else matrix(d, line.face) @ line.grip
+    return line.shear_state if d == 2 or line.face < 0 else matrix(d, line.face) @ line.shear_state
 
 
 @BOTH
@@ -277,25 +277,27 @@ def test_a_line_takes_over_a_share_of_force_and_friction(d, old, new, k_s, share
     """The force of a shear spring stays, and rigid friction. In space they turn into the axes of the new face."""
     whole = system(d, 2)
     drag = [0.3] if d == 2 else 0.3 * ALONG
-    gone = line_at(whole, 0, *old, k_s=k_s[0], grip=0.4, dragged=drag, push=5.0, pressed=2.0, depth=0.1, rate=0.7)
+    gone = line_at(
+        whole, 0, *old, k_s=k_s[0], shear_state=0.4, shear_force=drag, push=5.0, dashpot_force=2.0, depth=0.1, rate=0.7
+    )
     if d == 3:
-        gone.grip[:] = 0.4 * ALONG if gone.face < 0 else matrix(d, gone.face).T @ (0.4 * ALONG)
-    line = line_at(whole, 1, *new, k_s=k_s[1], dragged=2.0, push=3.0, pressed=4.0, depth=0.05, rate=0.2)
+        gone.shear_state[:] = 0.4 * ALONG if gone.face < 0 else matrix(d, gone.face).T @ (0.4 * ALONG)
+    line = line_at(whole, 1, *new, k_s=k_s[1], shear_force=2.0, push=3.0, dashpot_force=4.0, depth=0.05, rate=0.2)
     ends = [handover.place_of(one, sum(old), blocks(d)) for one in (gone, line)]
     sense = ends[0].sense * ends[1].sense
     if d == 2:
         sense *= np.dot(ends[0].normal, ends[1].normal)  # tangents turn as normals do
     handover.give(gone, line, share, sum(old), blocks(d))
-    assert (line.push, line.pressed) == pytest.approx((3.0 + 5.0 * share, 4.0 + 2.0 * share))
+    assert (line.push, line.dashpot_force) == pytest.approx((3.0 + 5.0 * share, 4.0 + 2.0 * share))
     assert (line.depth, line.rate) == (0.1, 0.7)
     softer = 0.5 if k_s[0] < math.inf else 1.0
     np.testing.assert_allclose(in_world(line, d), share * softer * sense * in_world(gone, d), rtol=1e-12)
-    np.testing.assert_allclose(line.dragged, 2.0 + share * sense * np.array(drag), rtol=1e-12)
-    kept = line.grip.copy()
+    np.testing.assert_allclose(line.shear_force, 2.0 + share * sense * np.array(drag), rtol=1e-12)
+    kept = line.shear_state.copy()
     gone.depth = 0.01
     handover.give(gone, line, share, sum(old), blocks(d))
     assert line.depth == 0.1
-    np.testing.assert_allclose(line.grip, 2 * kept, rtol=1e-12)
+    np.testing.assert_allclose(line.shear_state, 2 * kept, rtol=1e-12)
 
 
 @BOTH
@@ -340,9 +342,9 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
         handover.write_line(old[i], i, 0.0, two, numbers)
     handover.write_line(old[2], 1, 0.0, two, numbers)
     along = np.ones(1) if d == 2 else ALONG
-    grip = along if d == 2 else turn(d, 1).T @ along
-    old["push"], old["dragged"] = [30.0, 0.0, 0.0], along * [[1.0], [2.0], [4.0]]
-    old["grip"] = grip * (1.0 if k_s == math.inf else 1e-5)
+    shear_state = along if d == 2 else turn(d, 1).T @ along
+    old["push"], old["shear_force"] = [30.0, 0.0, 0.0], along * [[1.0], [2.0], [4.0]]
+    old["shear_state"] = shear_state * (1.0 if k_s == math.inf else 1e-5)
     gone = lines_of(old, np.zeros(3), [0.003, 0.002, 0.0])
     old["depth"] = [0.003, 0.002, 0.0]
     new = lines_of(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), 0.0)
@@ -352,20 +354,22 @@ def test_lines_are_handed_over_pair_by_pair(d, k_s):
     opening = FIRST_OPENING * numbers.sizes[:2].min()  # what follows nothing begins open, though its blocks overlap
     np.testing.assert_allclose(new.slack, [0.0015, 0.0015, 0.004 + opening], rtol=1e-11)
     np.testing.assert_allclose(new.rows["push"], [30.0, 0.0, 0.0])
-    np.testing.assert_allclose(new.rows["dragged"] @ along, [1.0, 2.0, 0.0], rtol=1e-12)  # what was open gives nothing
+    np.testing.assert_allclose(
+        new.rows["shear_force"] @ along, [1.0, 2.0, 0.0], rtol=1e-12
+    )  # what was open gives nothing
     ends = zip(new.rows, (3, 3, 1), strict=True)
     sides = np.array([handover.place_of(line, both, numbers).at for line, both in ends])
     np.testing.assert_allclose(sides, places.place - 0.002 * NORMAL[d], rtol=1e-9)
-    grips = np.linalg.norm(new.rows["grip"], axis=1)
+    grips = np.linalg.norm(new.rows["shear_state"], axis=1)
     if k_s == math.inf:
-        np.testing.assert_allclose(grips, np.linalg.norm(old["grip"], axis=1) * [1, 1, 0], rtol=1e-9)
+        np.testing.assert_allclose(grips, np.linalg.norm(old["shear_state"], axis=1) * [1, 1, 0], rtol=1e-9)
     else:
         np.testing.assert_allclose(grips, [1e-5, 1e-5, 0.0], rtol=1e-9)
-        old["grip"] = grip  # more than the face holds
+        old["shear_state"] = shear_state  # more than the face holds
         new = lines_of(rows(kind, 3, k=1e4, k_s=k_s, friction=0.5), np.zeros(3), 0.0)
         hand_over(new, places, gone, pairs, numbers)
         held = 0.5 * 1e4 * 0.0025 / k_s
-        np.testing.assert_allclose(np.linalg.norm(new.rows["grip"], axis=1), [held, held, 0.0], rtol=1e-9)
+        np.testing.assert_allclose(np.linalg.norm(new.rows["shear_state"], axis=1), [held, held, 0.0], rtol=1e-9)
 
 
 def test_friction_turns_from_the_face_of_one_block_to_that_of_the_other():
@@ -373,10 +377,10 @@ def test_friction_turns_from_the_face_of_one_block_to_that_of_the_other():
     numbers, kind = blocks(3), kinds(3).line
     old, places = rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), found(3, 2, 1)
     handover.write_line(old[0], 0, 0.0, found(3, 1, 2), numbers)
-    old["push"], old["depth"], old["grip"] = 30.0, 0.003, turn(3, 1).T @ (0.4 * ALONG)
+    old["push"], old["depth"], old["shear_state"] = 30.0, 0.003, turn(3, 1).T @ (0.4 * ALONG)
     places.normal[0] *= -1
     new = lines_of(rows(kind, 1, k=1e4, k_s=math.inf, friction=0.5), np.zeros(1), 0.0)
     pairs = Pairs.belonging(np.array([5]), np.array([5]))
     hand_over(new, places, lines_of(old, np.zeros(1), 0.003), pairs, numbers)
-    before, after = turn(3, 1) @ old["grip"][0], turn(3, 2) @ new.rows["grip"][0]
+    before, after = turn(3, 1) @ old["shear_state"][0], turn(3, 2) @ new.rows["shear_state"][0]
     np.testing.assert_allclose(after, -before, rtol=1e-12)

@@ -12,7 +12,7 @@ from mjrock.distinct.kinds.lists import links_of
 from mjrock.distinct.loop import Clock, advance
 from mjrock.distinct.stable_step import longest_step
 from mjrock.distinct.system import Books, Samples
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 
 K, C, GAP, SPEED = 1e5, 50.0, 1.5, 0.4
 
@@ -22,7 +22,7 @@ def tied():
     blocks = [GROUND, box(-1.25, -0.75, 0, 0.3), box(0.75, 1.25, 0, 0.3)]
     masonry = mr.Masonry(blocks, k_n=1e8, friction=0.0, frequency=100.0)
     tie, damper = mr.Tie(0.15, K, length=GAP, block=2), mr.Damper(0.15, c=C, length=GAP, block=2)
-    scene = standing_masonry(masonry, (tie, damper))
+    scene = scene_of_masonry(masonry, (tie, damper))
     case = mr.MasonryCase(masonry, 1.0, effects=(tie, damper))
     return changed(scene, links={"anchor_body": [0, 0], "anchor_at": [(0.25, 0.0)] * 2}), case
 
@@ -37,7 +37,13 @@ def test_a_tie_and_a_damper_between_two_blocks_of_the_plane_pull_both():
     h = 0.2 * longest_step(system)
     books, count = Books.empty(system, 3), 600
     samples = Samples.room(count + 1, system, books, ledger=True)
-    clock = Clock(0, h, 5, 0, 5 * count + 1, 5 * count, np.inf, 0.0, (0.0,) * len(system.axes))
+    clock = Clock(
+        h=h,
+        steps_per_sample=5,
+        stop=5 * count + 1,
+        last=5 * count,
+        ground_acceleration_before=(0.0,) * len(system.axes),
+    )
     advance(system, books, samples, clock, alone(system))
     mass = scene.bodies.mass[0]
     samples = samples.chosen(slice(-1))

@@ -53,16 +53,7 @@ def room(whole, count, ledger=True, checks=2, groups=3):
 
 def clock(d, stop, **more):
     """Steps from the start, a sample of each, and none after `stop`."""
-    start = {
-        "step": 0,
-        "h": H,
-        "every": 1,
-        "row": 0,
-        "last": 999,
-        "ends": math.inf,
-        "before": 0.0,
-        "pushed": (0.0,) * d,
-    }
+    start = {"h": H, "steps_per_sample": 1, "last": 999, "ground_acceleration_before": (0.0,) * d}
     return Clock(**start | {"stop": stop} | more)
 
 
@@ -87,7 +78,7 @@ def test_bodies_in_flight_have_the_motion_of_weight_and_ground(d):
     place, velocity = whole.bodies["place"].copy(), VELOCITY[:, which]
     spins = whole.bodies["spin"].copy()
     account, samples = room(whole, count, checks=5)
-    ended = advanced(whole, account, samples, clock(d, count, last=count - 1, check=2))
+    ended = advanced(whole, account, samples, clock(d, count, last=count - 1, steps_per_check=2))
     assert ended == (count, count, False)
     up = np.eye(d)[-1]
     before = velocity
@@ -116,7 +107,7 @@ def test_a_run_goes_on_from_a_step_before(d):
     """Its velocities are half that step before the pose, and the ground has moved the bodies since."""
     whole, before, pushed = flying(d), 0.004, (0.3, -0.7, 0.5)[:d]
     velocity, (account, samples) = whole.bodies["velocity"].copy(), room(whole, 1)
-    advanced(whole, account, samples, clock(d, 1, before=before, pushed=pushed))
+    advanced(whole, account, samples, clock(d, 1, h_before=before, ground_acceleration_before=pushed))
     changed = -moved(d, 0.5 * H) - 0.5 * before * np.array(pushed) - G * 0.5 * (before + H) * np.eye(d)[-1]
     np.testing.assert_allclose(whole.bodies["velocity"], velocity + changed, rtol=1e-12)
     np.testing.assert_allclose(samples.velocity[0, :, :d], velocity + 0.5 * changed, rtol=1e-12)
@@ -131,7 +122,8 @@ def test_a_run_in_two_parts_is_that_in_one(d):
         account, samples = room(whole, 4, checks=6)
         step = row = 0
         for stop in parts:
-            options = {"step": step, "row": row, "every": 3, "check": 2, "last": 7}
+            every = {"steps_per_sample": 3, "steps_per_check": 2}
+            options = {"step": step, "sample": row, "last": 7} | every
             step, row, ended = advanced(whole, account, samples, clock(d, stop, **options))
             assert not ended
             numbers.append((step, row))
@@ -153,7 +145,7 @@ def test_a_run_in_two_parts_is_that_in_one(d):
 def test_a_check_leaves_the_samples_as_they_are(d):
     """That of the fifth step, after the sample of the fourth one."""
     runs = []
-    for options in ({"every": 3, "check": 2}, {"every": 3}):
+    for options in ({"steps_per_sample": 3, "steps_per_check": 2}, {"steps_per_sample": 3}):
         whole = flying(d)
         account, samples = room(whole, 2, checks=3)
         advanced(whole, account, samples, clock(d, 6, **options))
@@ -184,7 +176,7 @@ def test_a_body_is_astray_beyond_a_million_metres_or_where_a_run_follows_no_rota
 
 def test_unless_it_is_asked_to_a_run_damps_nothing_and_looks_not_ahead():
     asked_nothing = clock(2, 1)
-    assert (asked_nothing.lead, asked_nothing.drag, asked_nothing.local) == (0.0, 0.0, 0.0)
+    assert (asked_nothing.steps_ahead, asked_nothing.mass_damping, asked_nothing.local_damping) == (0.0, 0.0, 0.0)
 
 
 @BOTH
@@ -194,7 +186,7 @@ def test_a_motion_is_slowed_down_as_it_is_asked_to(d, drag, local):
     whole = flying(d)._replace(ground=Ground.from_motions(None))
     velocity = whole.bodies["velocity"].copy()
     account, samples = room(whole, 4)
-    advanced(whole, account, samples, clock(d, 4, drag=drag, local=local))
+    advanced(whole, account, samples, clock(d, 4, mass_damping=drag, local_damping=local))
     for n in range(4):
         kick = H if n else 0.5 * H
         weight = -G * (1 + local * np.sign(velocity[:, -1]))
@@ -289,7 +281,7 @@ def test_links_act_and_are_booked_at_the_time_of_the_pose(d):
     account, samples = room(whole, count)
     advanced(whole, account, samples, clock(d, count, last=count - 1))
     pose = samples.pose[:count, 0, 0]
-    pulled = samples.pulled[:count, 0]
+    pulled = samples.link_forces[:count, 0]
     target = np.interp(H * np.arange(count), [0.0, 0.1, 0.3], history[:, 0])
     moving = np.diff(target, prepend=0.0) / H
     after = np.diff(pose) / H
@@ -328,7 +320,7 @@ def test_forces_start_with_weight_and_the_ground(d):
     whole.bodies["rotation"], whole.bodies["moment"], whole.bodies["force"] = 9.0, 9.0, 9.0
     if d == 3:
         inverse, whole.bodies["inverse_in_world"] = whole.bodies["inverse_in_world"].copy(), 9.0
-    account.totals[0].push, account.totals[0].ground = last, 0.5
+    account.totals[0].ground_acceleration, account.totals[0].ground = last, 0.5
     loop.start_forces(whole, account, tuple(push), before)
     np.testing.assert_allclose(whole.bodies["force"], -np.outer(MASSES, push + G * np.eye(d)[-1]), rtol=1e-13)
     assert not whole.bodies["moment"].any()
@@ -338,7 +330,7 @@ def test_forces_start_with_weight_and_the_ground(d):
         np.testing.assert_allclose(whole.bodies["inverse_in_world"], inverse, rtol=1e-13)
     work = -before * MASSES @ whole.bodies["velocity"] @ (0.5 * (push + last))
     assert account.totals[0].ground == pytest.approx(0.5 + work, rel=1e-12)
-    np.testing.assert_array_equal(account.totals[0].push, push)
+    np.testing.assert_array_equal(account.totals[0].ground_acceleration, push)
 
 
 @BOTH
@@ -348,22 +340,22 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     whole, before = system(d, 3), 0.02
     account = Books.empty(whole, 1)
     samples = Samples.room(2, whole, account, ledger=ledger)
-    lines, grip = whole.lines, np.arange(9.0).reshape(3, 3)[:, : 2 * d - 3] * 1e-3
-    lines["k"], lines["depth"], lines["push"], lines["pressed"] = (
+    lines, shear_state = whole.lines, np.arange(9.0).reshape(3, 3)[:, : 2 * d - 3] * 1e-3
+    lines["k"], lines["depth"], lines["push"], lines["dashpot_force"] = (
         2e3,
         [0.01, 0.0, 0.0],
         [27.0, -6.0, 0.0],
         [3.0, 0.0, 9.0],
     )
-    lines["rate"], lines["grip"], lines["k_s"] = 0.5, grip, [math.inf, 400.0, 500.0]
+    lines["rate"], lines["shear_state"], lines["k_s"] = 0.5, shear_state, [math.inf, 400.0, 500.0]
     bond = whole.laws[0].rows[0]
-    bond.k, bond.secant, bond.gap, bond.k_s, bond.grip[:] = 1.0, 900.0, -0.02, 300.0, 2e-3
+    bond.k, bond.secant, bond.gap, bond.k_s, bond.shear_state[:] = 1.0, 900.0, -0.02, 300.0, 2e-3
     account.totals[0].friction, account.totals[0].ground = 7.0, 5.0
     account.dashpots[:] = 11.0
     for name, taken in zip(DISSIPATED_BY_LAWS, range(1, 6), strict=True):
         account.totals[0][name] = taken
     loop.record_pose(whole, account, samples, 1, before)
-    squares = (grip**2).sum(axis=1)
+    squares = (shear_state**2).sum(axis=1)
     sheared = 0.5 * (400.0 * squares[1] + 500.0 * squares[2] + 300.0 * 4e-6 * (2 * d - 3))
     late = 0.5 * before * 0.5 * np.array([27.0 - 3.0 - 20.0, -6.0])
     sample = samples.energy[1]
@@ -371,7 +363,7 @@ def test_springs_hold_energy_at_a_sample_and_accounts_are_kept(d, ledger):
     assert sample.friction == pytest.approx(7.0 - sheared, rel=1e-12)
     assert (sample.ground, sample.driven, sample.potential) == (5.0, 0.0, 0.0)
     assert [sample[name] for name in DISSIPATED_BY_LAWS] == [1.0, 2.0, 3.0, 4.0, 5.0]
-    lines["push"][1], lines["pressed"][1] = -6.0, -2.0  # the dashpot pulls
+    lines["push"][1], lines["dashpot_force"][1] = -6.0, -2.0  # the dashpot pulls
     loop.record_pose(whole, account, samples, 0, before)
     by_spring = 0.5 * before * (-6.0 + 2.0) * 0.5
     assert samples.energy[0].elastic == pytest.approx(sample.elastic, rel=1e-12)

@@ -220,7 +220,7 @@ def test_faces_without_a_joint_that_hardly_lie_over_each_other_have_less(in_spac
 
 def test_a_number_of_a_law_that_joints_have_already_is_named():
     class Doubled(JointLaw):
-        own = numbers("friction", "worn")
+        own_fields = numbers("friction", "worn")
 
     with pytest.raises(TypeError, match="Doubled has friction as a number of a joint too"):
         Doubled.table(2, 1)

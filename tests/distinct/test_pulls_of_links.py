@@ -11,7 +11,7 @@ from mjrock.distinct.kinds import link, ties
 from mjrock.distinct.kinds.actuators import Actuators
 from mjrock.distinct.kinds.constant_forces import ConstantForces
 from mjrock.distinct.kinds.dampers import Dampers
-from mjrock.distinct.kinds.lists import act_all, hold_all, numbered
+from mjrock.distinct.kinds.lists import act_all, numbered, record_links
 from mjrock.distinct.kinds.ties import Ties
 from mjrock.distinct.rows import rows
 from mjrock.distinct.supports import Supports, moving
@@ -33,7 +33,7 @@ def act(whole, account, t=5.0):
 def held(whole, account):
     """Potential energy, energy in springs and what is put in of the links of a system [J]."""
     energy = rows(ENERGY, 1)[0]
-    hold_all(whole.links, whole, account, energy, np.zeros(9))
+    record_links(whole.links, whole, account, energy, np.zeros(9))
     return energy.potential, energy.elastic, energy.driven
 
 
@@ -100,16 +100,16 @@ def test_a_link_is_where_its_ends_are(d, end):
 def test_a_tie_pulls_where_it_is_longer_than_its_slack_and_a_spring_pushes_too(d, end, longer, push):
     stretch = longer if push else max(longer, 0.0)
     last = -3.0 if stretch else 0.0  # it was as taut in the step before
-    whole, tie, _ = linked(d, end, k=2e3, strength=1e9, ultimate=1.0, pulled=last)
+    whole, tie, _ = linked(d, end, k=2e3, strength=1e9, ultimate=1.0, force=last)
     tie.reach, tie.push = geometry(whole, end)[0] - longer, push
     account = books(whole)
     act(whole, account)
     assert_pulled(whole, end, -2e3 * stretch)
-    assert tie.pulled == pytest.approx(-2e3 * stretch, rel=1e-10)
+    assert tie.force == pytest.approx(-2e3 * stretch, rel=1e-10)
     work = 0.5 * H * (last - 2e3 * stretch) * carried(whole, end)
     assert account.totals[0].ground == pytest.approx(work, rel=1e-10)
     assert held(whole, account) == pytest.approx((0.0, 0.5 * 2e3 * stretch**2, 0.0), rel=1e-9)
-    assert (tie.drawn, account.links[0], tie.broken) == (0.0, 0.0, math.inf)
+    assert (tie.plastic, account.links[0], tie.broken) == (0.0, 0.0, math.inf)
     act(whole, account)
     assert account.totals[0].ground == pytest.approx(work - H * 2e3 * stretch * carried(whole, end), rel=1e-10)
 
@@ -120,20 +120,20 @@ def test_a_tie_pulls_where_it_is_longer_than_its_slack_and_a_spring_pushes_too(d
 )
 def test_a_tie_yields_at_its_strength_and_slips_at_its_push(d, longer, push, way):
     """By what it is longer than its spring can hold; the work is booked, and its reach moves on."""
-    whole, tie, end = linked(d, k=2e3, strength=20.0, push=push, ultimate=0.5, drawn=0.1)
+    whole, tie, end = linked(d, k=2e3, strength=20.0, push=push, ultimate=0.5, plastic=0.1)
     tie.reach = reach = geometry(whole, end)[0] - longer
     account, held = books(whole), 20.0 if way > 0 else push
     beyond = 0.03 - held / 2e3
     act(whole, account)
     assert_pulled(whole, end, -way * held)
-    assert tie.pulled == pytest.approx(-way * held, rel=1e-9)
+    assert tie.force == pytest.approx(-way * held, rel=1e-9)
     assert tie.reach == pytest.approx(reach + way * beyond, rel=1e-12)
-    assert tie.drawn == pytest.approx(0.1 + beyond, rel=1e-10)
+    assert tie.plastic == pytest.approx(0.1 + beyond, rel=1e-10)
     assert account.links[0] == pytest.approx(held * beyond, rel=1e-9)
     tie.reach = reach
     act(whole, account)
     assert account.links[0] == pytest.approx(2 * held * beyond, rel=1e-9)
-    assert tie.drawn == pytest.approx(0.1 + 2 * beyond, rel=1e-10)
+    assert tie.plastic == pytest.approx(0.1 + 2 * beyond, rel=1e-10)
     assert account.links[1] == 0.0
 
 
@@ -142,7 +142,7 @@ def test_a_tie_yields_at_its_strength_and_slips_at_its_push(d, longer, push, way
 @pytest.mark.parametrize("left", [0.004, 0.02, 0.0])
 def test_a_tie_breaks_where_it_has_been_drawn_out_as_far_as_it_can_be(d, end, left):
     """Within the step, when the length was just reached. What it pulled too short or too long there is made up for."""
-    whole, tie, _ = linked(d, end, k=2e3, strength=20.0, ultimate=0.5, drawn=0.5 - left, pulled=-20.0)
+    whole, tie, _ = linked(d, end, k=2e3, strength=20.0, ultimate=0.5, plastic=0.5 - left, force=-20.0)
     length, *_, rate = geometry(whole, end)
     turned = math.copysign(1.0, rate)
     whole.bodies["velocity"] *= turned  # so that it grows
@@ -152,17 +152,17 @@ def test_a_tie_breaks_where_it_has_been_drawn_out_as_far_as_it_can_be(d, end, le
     tie.reach, account = length - beyond - 20.0 / 2e3, books(whole)
     act(whole, account)
     assert account.links[0] == pytest.approx(20.0 * left, rel=1e-9, abs=1e-15)
-    assert tie.drawn == pytest.approx(0.5, rel=1e-12)
+    assert tie.plastic == pytest.approx(0.5, rel=1e-12)
     assert tie.broken == pytest.approx(5.0 - 0.1 * H, rel=1e-9)
     assert account.links[1] == pytest.approx(0.5 * 20.0**2 / 2e3)
     assert account.totals[0].ground == pytest.approx(-0.9 * H * 20.0 * carried(whole, end), rel=1e-9)
     assert_pulled(whole, end, -20.0 * 0.4)
-    assert tie.pulled == pytest.approx(-20.0 * 0.4, rel=1e-9)
+    assert tie.force == pytest.approx(-20.0 * 0.4, rel=1e-9)
     assert held(whole, account) == (0.0, 0.0, 0.0)
     whole.bodies["force"] = whole.bodies["moment"] = 0.0
     act(whole, account, tie.broken)
     assert_pulled(whole, end, 0.0)
-    assert tie.pulled == 0.0
+    assert tie.force == 0.0
 
 
 @pytest.mark.parametrize(("ultimate", "broken"), [(0.5, True), (0.75, False)])
@@ -197,11 +197,11 @@ def test_when_a_tie_broke():
 @BOTH
 @ENDS
 def test_a_damper_is_against_its_rate(d, end):
-    whole, damper, _ = linked(d, end, Dampers, c=50.0, pulled=7.0)
+    whole, damper, _ = linked(d, end, Dampers, c=50.0, force=7.0)
     account, rate = books(whole), geometry(whole, end)[-1]
     act(whole, account)
     assert_pulled(whole, end, -50.0 * rate)
-    assert damper.pulled == pytest.approx(-50.0 * rate, rel=1e-11)
+    assert damper.force == pytest.approx(-50.0 * rate, rel=1e-11)
     taken, work = 0.5 * H * (50.0 * rate - 7.0) * rate, 0.5 * H * (7.0 - 50.0 * rate) * carried(whole, end)
     assert account.links[0] == pytest.approx(taken, rel=1e-10)
     assert account.totals[0].ground == pytest.approx(work, rel=1e-10)
@@ -212,7 +212,7 @@ def test_a_damper_is_against_its_rate(d, end):
 def driving(d):
     """An actuator of body 1, and a damper on it, whose account stands before that of the actuator."""
     way = np.eye(d)[0] * 0.6 + np.eye(d)[-1] * 0.8
-    whole, row, _ = linked(d, "ground", Actuators, k=300.0, c=2.0, reach=0.02, pulled=5.0, dragged=1.0)
+    whole, row, _ = linked(d, "ground", Actuators, k=300.0, c=2.0, reach=0.02, force=5.0, dashpot_force=1.0)
     row.between = way
     history, before = np.full((1, 1), 0.05), np.full((1, 1), 0.05 - 0.4 * H)
     drives = Supports(np.zeros(1), history, np.array([0, 1]), before, np.zeros((1, 1)))
@@ -230,7 +230,7 @@ def test_an_actuator_pushes_a_point_along_its_way_to_its_history(d):
     act(whole, account)
     np.testing.assert_allclose(body.force, force * way, rtol=1e-11, atol=1e-12)
     np.testing.assert_allclose(body.moment, about(arm, force * way), rtol=1e-11, atol=1e-12)
-    assert (row.pulled, row.dragged) == pytest.approx((force, 2.0 * rate), rel=1e-11)
+    assert (row.force, row.dashpot_force) == pytest.approx((force, 2.0 * rate), rel=1e-11)
     assert account.links[1] == pytest.approx(driven, rel=1e-11)
     np.testing.assert_allclose(account.links[::2], [0.0, taken], rtol=1e-10)
     in_spring = force - 2.0 * rate
@@ -252,7 +252,7 @@ def test_an_actuator_without_a_body_pushes_all_in_proportion_to_their_mass(d):
     act(whole, account)
     np.testing.assert_allclose(whole.bodies["force"], np.outer(shares, force * way), rtol=1e-11)
     np.testing.assert_array_equal(whole.bodies["moment"], 0.0)
-    assert (row.pulled, row.dragged) == pytest.approx((force, 2.0 * rate), rel=1e-11)
+    assert (row.force, row.dashpot_force) == pytest.approx((force, 2.0 * rate), rel=1e-11)
     assert account.links[1] == pytest.approx(0.5 * H * (5.0 + force) * 0.4, rel=1e-11)
     assert account.links[2] == pytest.approx(0.5 * H * (1.0 + 2.0 * rate) * rate, rel=1e-10)
 

@@ -18,7 +18,7 @@ from mjrock.distinct import thread, thread_pool
 from mjrock.distinct.rows import kinds, rows
 from mjrock.distinct.setup import setup_of
 from mjrock.distinct.system import Books
-from mjrock.distinct.thread import LINES_TOGETHER, put_apart, spans_of, threads_of
+from mjrock.distinct.thread import LINES_TOGETHER, pending_forces, spans_of, threads_of
 
 JOINTS = {"k_n": 1e9, "k_s": 4e8, "friction": 0.6, "xi": 0.05}
 MORTAR = mr.BONDS["cement mortar, wall J4D"]
@@ -90,13 +90,13 @@ def test_forces_wait_where_two_threads_press_on_a_body():
     """Lines in a chain of bodies: those of the one body that both threads press on wait, in their order."""
     bodies, lines = rows(kinds(2).body, 6), rows(kinds(2).line, 5, sense=1.0)
     lines["body"], lines["face"] = np.arange(1, 6), np.arange(5)
-    apart = put_apart(bodies, lines, np.array([0, 2, 5]))
-    assert apart["body"].tolist() == [-1, 2, 2]
-    assert lines["apart"].tolist() == [0, 1, 0, 0, 0]
-    assert lines["face_apart"].tolist() == [0, 0, 2, 0, 0]
+    pending = pending_forces(bodies, lines, np.array([0, 2, 5]))
+    assert pending["body"].tolist() == [-1, 2, 2]
+    assert lines["pending"].tolist() == [0, 1, 0, 0, 0]
+    assert lines["face_pending"].tolist() == [0, 0, 2, 0, 0]
     threads, alone = threads_of(bodies, lines, 1)
     assert len(alone) == 1
-    assert not lines["apart"].any()
+    assert not lines["pending"].any()
     assert threads[0].own_bodies == (0, 1)
 
 
@@ -104,20 +104,20 @@ def test_room_for_one_thread_takes_back_what_waits():
     """Lines of a run by two threads write outside of the room of one thread otherwise."""
     system = setup_of(wall(), None, None).system
     books, _ = Books.empty(system, len(system.lines)).of_threads(system, 2)
-    assert system.lines["apart"].any()
-    assert len(books.apart) > len(books.with_room(system).apart) == 1
-    assert not system.lines["apart"].any()
+    assert system.lines["pending"].any()
+    assert len(books.pending) > len(books.with_room(system).pending) == 1
+    assert not system.lines["pending"].any()
 
 
 def test_each_body_and_line_has_one_thread():
     system = setup_of(wall(), None, None).system
-    threads, apart = threads_of(system.bodies, system.lines, 5)
+    threads, pending = threads_of(system.bodies, system.lines, 5)
     for name, spans in (("own_lines", threads[0].lines), ("own_bodies", threads[0].bodies)):
         parts = [getattr(thread, name) for thread in threads]
         assert parts[0][0] == 0
         assert parts[-1][1] == len(spans) - 1
         assert all(one[1] == other[0] for one, other in itertools.pairwise(parts))
-    assert [threads[0].own_apart[0], threads[-1].own_apart[1]] == [1, len(apart)]
+    assert [threads[0].own_pending[0], threads[-1].own_pending[1]] == [1, len(pending)]
 
 
 def test_small_runs_rigid_friction_and_workers_take_one_thread(monkeypatch):
@@ -147,11 +147,12 @@ def test_a_run_goes_on_with_one_thread_where_no_more_can_be_started(monkeypatch)
 
 
 def test_the_faster_number_of_threads_makes_the_steps():
-    threads, clock = thread_pool.ThreadPool(None), thread_pool.Clock(0, 1.0, 1, 0, 80, 100, np.inf, 0.0, (0.0, 0.0))
+    threads = thread_pool.ThreadPool(None)
+    clock = thread_pool.Clock(h=1.0, steps_per_sample=1, stop=80, last=100, ground_acceleration_before=(0.0, 0.0))
     assert threads._choice((2, 1), clock) == (2, 80)
-    threads._pace[2] = 3.0
+    threads._step_times[2] = 3.0
     assert threads._choice((2, 1), clock) == (1, 80)
-    threads._pace[1] = 2.0
+    threads._step_times[1] = 2.0
     taken = [threads._choice((2, 1), clock) for _ in range(thread_pool.TRIED_AGAIN)]
     assert taken.count((1, 80)) == thread_pool.TRIED_AGAIN - 1
     assert taken.count((2, 10)) == 1

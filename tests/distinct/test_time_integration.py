@@ -90,9 +90,9 @@ def test_a_step_that_is_given_again_gives_the_same_samples(seed):
     duration, output, spacing, limit = 10 ** rng.uniform((-1, -2, -3, -5), (1, -1, -1.5, -3))
     length = StepLength(limit, 0.3 * limit, spacing)
     first = TimeGrid.of_run(length, duration, None, output)
-    again = TimeGrid.of_run(length, duration, first.h, first.every * first.stride * first.h)
-    assert (again.every, again.stride, again.last) == (first.every, first.stride, first.last)
+    again = TimeGrid.of_run(length, duration, first.h, first.steps_per_sample * first.stride * first.h)
+    assert (again.steps_per_sample, again.stride, again.last) == (first.steps_per_sample, first.stride, first.last)
     other = TimeGrid.of_run(length, duration, 0.77 * first.h, output)
-    apart = other.every * other.stride * other.h
-    assert other.every * other.h < spacing + 0.5 * other.h
-    assert output - (other.every + 1) * other.h < apart < max(output, other.h) * (1 + 1e-9)
+    apart = other.steps_per_sample * other.stride * other.h
+    assert other.steps_per_sample * other.h < spacing + 0.5 * other.h
+    assert output - (other.steps_per_sample + 1) * other.h < apart < max(output, other.h) * (1 + 1e-9)

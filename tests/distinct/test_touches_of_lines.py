@@ -144,7 +144,7 @@ def test_what_a_spring_is_due_does_the_work_that_is_missing(rate, share):
 
 def test_what_a_touch_still_does_is_counted_at_a_sample():
     """Half a step of the impulse that is not the law's, of the spring, and of the dashpot where the line has left."""
-    row = line(push=50.0, pressed=8.0, depth=0.001, rate=-0.2)
+    row = line(push=50.0, dashpot_force=8.0, depth=0.001, rate=-0.2)
     assert touches.in_transit(row, H) == (pytest.approx(0.5 * H * (50.0 - 8.0 - 30.0) * -0.2), 0.0)
     row.push, row.depth = -20.0, 0.0
     by_spring, by_dashpot = touches.in_transit(row, H)

@@ -126,7 +126,7 @@ def device_forces(answer: mr.Response) -> np.ndarray:
         if link.anchor_block in row:
             total[:, row[link.anchor_block]] -= force
     for name, push in answer.actuators.items():
-        total[:, row[case.actuators[name].block]] += push[:, None] * case.actuators[name].way
+        total[:, row[case.actuators[name].block]] += push[:, None] * np.array(case.actuators[name].direction)
     for block, guide in kept.guides.items():
         total[:, row[case.masonry.names.index(block)], -1] += guide[:, 0]
     return total

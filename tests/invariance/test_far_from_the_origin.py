@@ -10,7 +10,7 @@ import mjrock as mr
 from mjrock.distinct.search.finder import NONE, Finder
 from mjrock.distinct.search.pair_law import pair_number
 from mjrock.distinct.search.solids import Poses
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 
 SHAKEN = 1e-5
 """Displacements of the blocks [m]: neighbours across a corner then lie over each other by slivers as wide as that."""
@@ -28,7 +28,7 @@ def dome(by=(0.0, 0.0, 0.0), k_n=1e12):
 def meetings_in(masonry, by=(0.0, 0.0, 0.0)):
     """Of each pair of blocks without a joint, after small displacements: its places, their share of what the pair has,
     the middle of the places, moved back, and the sum of their normals, shape (pairs, 8)."""
-    standing = standing_masonry(masonry).rest_geometry
+    standing = scene_of_masonry(masonry).rest_geometry
     solids, count = standing.solids, len(standing.solids)
     moved = SHAKEN * np.random.default_rng(1).standard_normal((count, 3))
     poses = Poses(np.array([solid.rest for solid in solids]), moved, np.zeros((count, 3, 3)))
@@ -53,7 +53,7 @@ def test_blocks_of_a_dome_meet_at_their_corners_alike(by):
 
 @pytest.mark.parametrize("by", OFTEN)
 def test_a_stiff_dome_is_at_rest_alike(by):
-    here, there = standing_masonry(dome()), standing_masonry(dome(by))
+    here, there = scene_of_masonry(dome()), scene_of_masonry(dome(by))
     force = here.contacts.k * here.bears
     np.testing.assert_allclose(there.contacts.k * there.bears, force, rtol=0, atol=1e-8 * force.max())
 

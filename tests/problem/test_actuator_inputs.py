@@ -27,8 +27,8 @@ def test_an_actuator_has_no_dashpot_and_no_guide_unless_it_is_asked_for():
 def test_a_point_and_a_direction_have_two_or_three_numbers():
     one = actuator(at=(-0.4, 0.1, 2.5), direction=(3.0, 0.0, -4.0))
     assert (one.at, one.height) == ((-0.4, 0.1, 2.5), 2.5)
-    np.testing.assert_allclose(one.way, [0.6, 0.0, -0.8])
-    np.testing.assert_allclose(actuator(direction=(3e-9, -4e-9)).way, [0.6, -0.8])
+    np.testing.assert_allclose(one.direction, [0.6, 0.0, -0.8])
+    np.testing.assert_allclose(actuator(direction=(3e-9, -4e-9)).direction, [0.6, -0.8])
     for shape in ((0.4,), (0.4, 0.1, 2.5, 1.0)):
         with pytest.raises((TypeError, ValueError), match="at of the actuator"):
             actuator(at=shape)
@@ -38,8 +38,8 @@ def test_a_point_and_a_direction_have_two_or_three_numbers():
 
 @pytest.mark.parametrize("way", [1, -1, 1.0])
 def test_one_is_along_x(way):
-    np.testing.assert_array_equal(actuator(direction=way).way, [way, 0.0])
-    np.testing.assert_array_equal(actuator(at=(0.0, 0.0, 1.0), direction=way).way, [way, 0.0, 0.0])
+    np.testing.assert_array_equal(actuator(direction=way).direction, [way, 0.0])
+    np.testing.assert_array_equal(actuator(at=(0.0, 0.0, 1.0), direction=way).direction, [way, 0.0, 0.0])
 
 
 @pytest.mark.parametrize("direction", [(0.0, 0.0), (0.6e-9, 0.8e-9), (1e-9, 0.0), (1.7e308, 1.7e308), 2, 0.5])
@@ -50,7 +50,7 @@ def test_a_direction_without_length_is_refused(direction):
 
 def test_short_and_long_directions_are_taken():
     for size in (1.5e-9, 1e200):
-        np.testing.assert_allclose(actuator(direction=(0.6 * size, 0.8 * size)).way, [0.6, 0.8])
+        np.testing.assert_allclose(actuator(direction=(0.6 * size, 0.8 * size)).direction, [0.6, 0.8])
 
 
 def test_the_actuator_of_a_push_rests():

@@ -13,7 +13,7 @@ from mjrock.geometry.kinematics import gap
 from mjrock.problem.masonry.blocks import joints
 from mjrock.problem.masonry.blocks.joints import neighbours
 from mjrock.problem.masonry.lines import rates
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 
 LEFT, RIGHT, TOP = (
     box(-1, 0, 0, 1, name="left"),
@@ -167,7 +167,7 @@ def test_either_end_of_a_joint_is_carried_by_the_block_that_has_a_corner_there(p
 
 def test_rates_of_lines_are_those_of_the_engine():
     masonry = mr.Masonry([GROUND, LEFT, RIGHT, TOP], points=3)
-    scene = standing_masonry(masonry)
+    scene = scene_of_masonry(masonry)
     flat = np.zeros(9)
     mine = {}
     for i in range(len(scene.contacts.k)):

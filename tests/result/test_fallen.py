@@ -7,7 +7,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.result.joint_motion import joint_motion
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 
 SOLVERS = [mr.simulate, mr.solve_explicit]
 TABLE = box(-1, 0, 0, 1, fixed=True, name="table")
@@ -38,7 +38,7 @@ def test_a_joint_has_parted_where_its_faces_are_apart_by_a_tenth_of_its_width(tu
     case = mr.MasonryCase(masonry, 1.0)
     down = 0.3 - 0.3 * np.cos(turned) - 0.2 * np.sin(turned)  # its lower corner comes up by so much as it turns
     pose = np.array([(0.0, lift - down, turned) for lift in (0.0, 0.039, 0.041, 0.079)])
-    record = joint_motion(case, standing_masonry(masonry), np.arange(4.0), pose)
+    record = joint_motion(case, scene_of_masonry(masonry), np.arange(4.0), pose)
     np.testing.assert_array_equal(record.parted[:, 0], [False, False, True, True])
 
 

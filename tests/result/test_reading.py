@@ -8,7 +8,7 @@ from masonry_blocks import GROUND, box
 
 import mjrock as mr
 from mjrock.result.motion import SampledMotion
-from mjrock.result.reading import TIME_AT_REST, BesidePoses, masonry_reading, wall_reading
+from mjrock.result.reading import TIME_AT_REST, ContactHistory, masonry_reading, wall_reading
 from mjrock.scene.masonry import masonry_scene
 
 BOX = mr.Masonry([GROUND, box(-0.3, 0.3, 0, 0.5, name="left"), box(1.0, 1.6, 0, 0.5, name="right")], k_n=1e8)
@@ -63,13 +63,13 @@ def test_blocks_that_left_joints_and_lie_still_have_come_to_rest(left, outcome):
     pose = np.tile(scene().at_rest, (len(t), 1, 1))
     velocity = np.zeros_like(pose)
     velocity[t < 2.0 - 1.5 * TIME_AT_REST] = 1.0
-    beside = BesidePoses(np.full(len(scene().contacts.joint), 0.3), left, {})
+    history = ContactHistory(np.full(len(scene().contacts.joint), 0.3), left, {})
     motion = SampledMotion(pose, velocity, np.full(len(t), -1e6))
-    reading = masonry_reading(CASE, scene(), t, motion, beside)
+    reading = masonry_reading(CASE, scene(), t, motion, history)
     assert reading.outcome is mr.Outcome[outcome]
     np.testing.assert_array_equal(reading.joints.opening, 0.3)
     velocity[t > 2.0 - 0.5 * TIME_AT_REST] = 1.0
-    assert masonry_reading(CASE, scene(), t, motion, beside).outcome is mr.Outcome.TIME_ENDED
+    assert masonry_reading(CASE, scene(), t, motion, history).outcome is mr.Outcome.TIME_ENDED
 
 
 def test_a_block_beside_ground_that_has_sunk_as_far_has_not_fallen():
@@ -81,6 +81,6 @@ def test_a_block_beside_ground_that_has_sunk_as_far_has_not_fallen():
     pose[:, 1, 0] += 2.0
     for below, fallen in ((0.2, {}), (0.3, {"right": 2.0})):  # half its height is 0.25 m
         pose[-1, 1, 1] = scene().at_rest[1, 1] - sunk[-1] - below
-        beside = BesidePoses(np.zeros(len(scene().contacts.joint)), True, {})
-        reading = masonry_reading(case, scene(), t, SampledMotion(pose, 0 * pose, np.zeros(len(t))), beside)
+        history = ContactHistory(np.zeros(len(scene().contacts.joint)), True, {})
+        reading = masonry_reading(case, scene(), t, SampledMotion(pose, 0 * pose, np.zeros(len(t))), history)
         assert dict(reading.joints.fallen) == fallen

@@ -10,7 +10,7 @@ import mjrock as mr
 from mjrock import linear
 from mjrock.problem.masonry.limit.statics import slippery
 from mjrock.problem.masonry.lines import lowest_frequency
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 from mjrock.scene.rest import UnsettledError
 from scripts.studies import two_storeys
 
@@ -34,8 +34,8 @@ def test_blocks_along_a_diagonal_are_those_of_a_full_matrix():
 
 def measured(masonry):
     """Pose of rest, whether it is stable, and the lowest and the highest frequency, of a scene made anew."""
-    standing_masonry.cache_clear()
-    scene = standing_masonry(masonry)
+    scene_of_masonry.cache_clear()
+    scene = scene_of_masonry(masonry)
     try:
         pose, stands = scene.at_rest, True
     except UnsettledError:
@@ -59,7 +59,7 @@ def test_all_ways_agree(name, many, monkeypatch):
 def test_motions_that_are_held_twice_or_by_nothing(monkeypatch):
     """The same row twice, an unknown that nothing resists, and one that falls."""
     stiffness = csr_array(np.diag([2.0, 3.0, 0.0, 5.0]))
-    grip = csr_array([[1.0, 1.0, 0.0, 0.0]] * 2)
+    constraints = csr_array([[1.0, 1.0, 0.0, 0.0]] * 2)
     answers = []
     for few, many in ((300, 20_000), (0, 20_000), (0, 0)):
         monkeypatch.setattr(linear, "SOLVED_IN_FULL", few)
@@ -68,7 +68,7 @@ def test_motions_that_are_held_twice_or_by_nothing(monkeypatch):
             value, mode = linear.lowest_mode(csr_array(np.diag([2.0, 3.0, first, 5.0])), 4.0)
             assert value == pytest.approx(first, abs=1e-9)
             np.testing.assert_allclose(np.abs(mode), [0.0, 0.0, 1.0, 0.0], rtol=0, atol=1e-9)
-        answers.append(linear.lowest_square(stiffness, np.ones(4), grip, 1e-12))
+        answers.append(linear.lowest_square(stiffness, np.ones(4), constraints, 1e-12))
     assert answers == pytest.approx([2.5, 2.5, 2.5], rel=1e-9)
 
 

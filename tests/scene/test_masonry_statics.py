@@ -15,7 +15,7 @@ import mjrock as mr
 from mjrock.problem.masonry.blocks import polyhedron
 from mjrock.problem.masonry.effects import applied
 from mjrock.problem.masonry.limit.statics import falling, friction_lacking, nudged
-from mjrock.scene.masonry import require_standing, standing_masonry
+from mjrock.scene.masonry import require_standing, scene_of_masonry
 from scripts.studies import two_storeys
 
 
@@ -25,7 +25,7 @@ def rigid(masonry):
 
 def settles(masonry):
     try:
-        return standing_masonry(masonry).at_rest is not None
+        return scene_of_masonry(masonry).at_rest is not None
     except ValueError:
         return False
 
@@ -174,7 +174,7 @@ def test_friction_that_is_lacking():
 def test_what_settles_is_in_equilibrium():
     """Springs carry the weight of an arch, and symmetric abutments half of it each."""
     masonry = mr.Masonry.arch(5.0, 0.75, voussoirs=16, points=3)
-    scene = standing_masonry(masonry)
+    scene = scene_of_masonry(masonry)
     pressed = scene.contacts.k * scene.bears
     turned = scene.contacts.normal * pressed[:, None]
     left = np.array([name.startswith("left") for name in scene.contacts.group])
@@ -188,7 +188,7 @@ def test_what_settles_is_in_equilibrium():
 @pytest.mark.parametrize("k_n", [1e10, 1e11])
 def test_an_arch_leaves_the_pose_in_which_its_keystone_only_balances(k_n):
     """Five voussoirs hinge about four points, and the middle one turns about two of them until it touches."""
-    scene = standing_masonry(mr.Masonry.arch(5.0, 0.56, math.pi, 5, k_n=k_n, friction=2.0))
+    scene = scene_of_masonry(mr.Masonry.arch(5.0, 0.56, math.pi, 5, k_n=k_n, friction=2.0))
     weight = mr.GRAVITY * scene.bodies.mass.max()
     assert np.abs(scene.at_rest).max() < 20 * weight / scene.contacts.k.min()
     assert np.abs(unbalanced(scene)[0]).max() < 1e-9 * weight
@@ -197,7 +197,7 @@ def test_an_arch_leaves_the_pose_in_which_its_keystone_only_balances(k_n):
 
 def test_a_soft_arch_settles():
     """Its symmetric pose carries the weight and does not stand, and its points slip."""
-    scene = standing_masonry(mr.Masonry.arch(5.0, 0.75, voussoirs=17, k_n=3e7))
+    scene = scene_of_masonry(mr.Masonry.arch(5.0, 0.75, voussoirs=17, k_n=3e7))
     weight = mr.GRAVITY * scene.bodies.mass.max()
     assert np.abs(unbalanced(scene)[0]).max() < 1e-9 * weight
     assert unbalanced(scene)[1].max() < 1e-9 * weight
@@ -210,7 +210,7 @@ def test_a_wall_with_openings_settles(height, storeys, gap, monkeypatch):
     """Open or closed head joints: with open ones nothing but friction holds a unit along its course."""
     monkeypatch.setattr(two_storeys, "OPEN", gap)
     openings = (two_storeys.Opening(2.0, 3.2, 0.0, 2.2), two_storeys.Opening(2.0, 3.2, 4.0, 5.2))[:storeys]
-    scene = standing_masonry(two_storeys.wall(replace(two_storeys.QUICK, length=5.2, height=height, openings=openings)))
+    scene = scene_of_masonry(two_storeys.wall(replace(two_storeys.QUICK, length=5.2, height=height, openings=openings)))
     missing, beyond = unbalanced(scene)
     assert np.abs(missing).max() < 1e-9 * mr.GRAVITY * scene.bodies.mass.max()
     assert beyond.max() < 1e-9 * mr.GRAVITY * scene.bodies.mass.max()

@@ -35,9 +35,9 @@ def test_the_estimate_grows_with_blocks_and_lines():
 
 def test_the_search_for_rest_has_a_bar_with_the_memory_that_it_needs():
     seen, column = [], mr.Masonry.column(width=0.51, height=2.0, drums=4)
-    scene.standing_masonry.cache_clear()
+    scene.scene_of_masonry.cache_clear()
     with progress_given_to(seen.append):
-        pose = scene.standing_masonry(column).at_rest
+        pose = scene.scene_of_masonry(column).at_rest
     assert pose[:, 2].max() < 0
     assert [each.done for each in seen] == list(range(1, len(seen) + 1))
     assert {each.what for each in seen} == {f"pose of rest, about {memory_of(4, 16, in_space=True) / 1e9:.2g} GB"}

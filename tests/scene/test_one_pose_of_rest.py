@@ -10,7 +10,7 @@ from masonry_blocks import GROUND, box
 import mjrock as mr
 from mjrock.distinct.setup import setup_of
 from mjrock.problem.masonry.limit.statics import falling
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 from scripts.checks.rest_on_processors import KERNELS, compared, rest, structure
 
 
@@ -20,7 +20,7 @@ def test_stiff_arches_that_stand_are_at_rest_and_bear_what_soft_ones_do(thin, co
 
     def thrusts(k_n):
         arch = mr.Masonry.arch(5.0, 5 * thin, voussoirs=count, k_n=k_n, k_s=0.5 * k_n, friction=0.7)
-        scene = standing_masonry(arch)
+        scene = scene_of_masonry(arch)
         return scene.contacts.k * scene.bears
 
     stiff, soft = thrusts(k_n), thrusts(k_n / 100)
@@ -46,7 +46,7 @@ def test_rest_is_the_same_under_the_kernels_of_other_processors(tmp_path):
 def rest_of(blocks, joints):
     """Displacements of the free blocks at rest, by name."""
     masonry = mr.Masonry(blocks, joints=joints)
-    return dict(zip((masonry.names[i] for i in masonry.free), standing_masonry(masonry).rest_state.pose, strict=True))
+    return dict(zip((masonry.names[i] for i in masonry.free), scene_of_masonry(masonry).rest_state.pose, strict=True))
 
 
 def redrawn(blocks, by=0.0, sense=1):
@@ -93,7 +93,7 @@ def test_an_arch_that_is_not_symmetric_falls_where_its_mirror_image_does(heavier
 def test_a_symmetric_arch_leans_in_its_motion_too():
     """A damped run from the drawn pose comes near the symmetric pose, leaves it and ends in a leaning one."""
     arch = mr.Masonry.arch(2.0, 0.22, voussoirs=5, joints=mr.Dry(1e9, friction=0.7, xi=0.05))
-    pose = standing_masonry(arch).rest_state.pose
+    pose = scene_of_masonry(arch).rest_state.pose
     end = mr.solve_explicit(mr.MasonryCase(arch, 3.0, settled=False), mass_damping=5.0).pose[-1]
     mirrored = pose[::-1] * [-1, 1, -1]
     assert min(np.abs(end - pose).max(), np.abs(end - mirrored).max()) < 1e-3 * np.abs(pose).max()
@@ -105,7 +105,7 @@ def test_an_arch_that_friction_keeps_stable_comes_to_the_same_rest_in_its_motion
     """Without the stiffness that friction has as it turns with the blocks, its symmetric pose would be unstable. Points
     that slip keep some of the little push."""
     arch = structure(1356)[1]
-    pose, velocity = standing_masonry(arch).rest_state.pose, np.tile([2e-3, 0.0, 0.0], (41, 1))
+    pose, velocity = scene_of_masonry(arch).rest_state.pose, np.tile([2e-3, 0.0, 0.0], (41, 1))
     np.testing.assert_allclose(pose, pose[::-1] * [-1, 1, -1], atol=1e-9 * np.abs(pose).max())
     case = mr.MasonryCase(arch, 5.0, settled=False, velocity=velocity)
     end = mr.solve_explicit(case, mass_damping=20.0).pose[-1]
@@ -148,5 +148,5 @@ def test_a_mass_at_the_edge_leaves_no_shear_that_cancels():
     case = mr.MasonryCase(masonry, 0.6, effects=mr.AddedMass(900.0, at=(0.3, 1.9), block="wall"))
     system = setup_of(case, None, None).system
     parted = 0.5 * width * (1 - np.cos(system.bodies["angle"].item()))
-    grips = system.lines["grip"].ravel() * 0.5 * width * k_s
+    grips = system.lines["shear_state"].ravel() * 0.5 * width * k_s
     np.testing.assert_allclose(grips, [0.5 * width * k_s * parted, -0.5 * width * k_s * parted], rtol=1e-3)

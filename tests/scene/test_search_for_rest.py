@@ -12,7 +12,7 @@ from mjrock.bars import Bar, progress_given_to
 from mjrock.geometry.poses import moved
 from mjrock.problem.wall.effect import LinkLaw
 from mjrock.scene import rest
-from mjrock.scene.masonry import standing_masonry
+from mjrock.scene.masonry import scene_of_masonry
 from mjrock.scene.parts import ConstantForces, Links
 
 WEIGHT = 2000.0 * 0.6 * 2.1 * mr.GRAVITY
@@ -63,7 +63,7 @@ def test_a_slider_sticks_or_has_what_the_face_holds_against_its_slip(slid, slips
     assert abs(sense) == 1
     stretch = sense * np.array([slid, slid, 0.0, 0.0])
     force = np.clip(k * stretch, -found.limit, found.limit)
-    np.testing.assert_allclose(friction.drag[:, 0], -force, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(friction.force[:, 0], -force, rtol=1e-9, atol=1e-9)
     assert (friction.slips[:2] == slips).all()
     assert not friction.slips[2:].any()
     chord = np.divide(force, stretch, out=k.copy(), where=stretch != 0)
@@ -102,7 +102,7 @@ def test_open_sliders_hold_nothing():
     scene = two_blocks()
     found = sliders(scene, [-1.0] * 4)
     friction = rest.friction_at(scene.potential, np.array([1e-3, 0.0, 0.0, 2e-3, 0.0, 0.0]), found)
-    assert not friction.drag.any()
+    assert not friction.force.any()
     assert not friction.stiffness.any()
     assert not rest.shear_stiffness(friction, 0.5).any()
 
@@ -221,7 +221,7 @@ def wall_beside_a_gap(courses: int = 10, below: int = 4) -> mr.Masonry:
 def test_a_block_that_slips_on_both_supports_is_found_at_rest_by_one_search():
     """Below the gap a block lies on two others that slide apart. It slips on both, and is dragged along by the one that
     carries more, until it slips on one alone: there is more force missing on the way."""
-    scene, seen = standing_masonry(wall_beside_a_gap()), []
+    scene, seen = scene_of_masonry(wall_beside_a_gap()), []
     with progress_given_to(seen.append):
         pose = scene.at_rest
     assert len(seen) < rest.POSES / 2  # one search, of those that begin from softer springs none
@@ -232,7 +232,7 @@ def test_a_block_that_slips_on_both_supports_is_found_at_rest_by_one_search():
 
 def test_a_search_that_makes_no_progress_ends_before_the_most_poses(monkeypatch):
     """The same block, where all that slips keeps some of its stiffness in the search."""
-    scene, seen = standing_masonry(wall_beside_a_gap()), []
+    scene, seen = scene_of_masonry(wall_beside_a_gap()), []
     monkeypatch.setattr(rest, "SLIDES", rest.POSES)
     with progress_given_to(seen.append), pytest.raises(rest.UnsettledError), rest.shown_search(scene.potential) as bar:
         rest.search_pose(scene.potential, rest.Search(scene.contacts.k, limited=True, bar=bar))

@@ -14,7 +14,7 @@ from ...problem.masonry.laws.joint_law import normal_force, shear_limit, stored
 from ..rotation import apply_impulse_at
 from ..rows import Row
 from ..system import Books, System
-from ..thread import press_apart
+from ..thread import add_line_force
 from .faces import TURNED_OVER, Meeting, meeting, relative_velocity, where_friction_rubs
 from .friction import along_face, as_vector, begin, carried, last_friction, list_rigid, sprung_friction, turned_along
 from .touches import due_impulse, foreseen, time_closed, touched_forces, was_open
@@ -40,20 +40,20 @@ def lost_past_face_edge(line: Row, meet: Meeting, opened: float) -> float:
 
 
 @inlined
-def press_lines(system: System, books: Books, h: float, kick: float, lead: float) -> tuple[int, int]:
+def press_lines(system: System, books: Books, h: float, force_time: float, steps_ahead: float) -> tuple[int, int]:
     """Add the forces of all lines but rigid friction, and list the lines that stick rigidly, and those that touched.
 
     Args:
         system, books: the bodies and their lines, and the accounts.
         h: length of the step that led to the pose [s], zero at the start.
-        kick: time for which the forces act on the velocities [s].
-        lead: by how many steps dashpots look ahead, see `foreseen`.
+        force_time: for how long the forces act on the velocities [s].
+        steps_ahead: by how many steps dashpots look ahead, see `foreseen`.
 
     Returns:
         How many lines stick rigidly, and how many met or left their face in the last step.
     """
     bodies, lines, supports, active, touched = system.bodies, system.lines, system.supports, 0, 0
-    rubbed, put_in = 0.0, 0.0
+    dissipated, support_work = 0.0, 0.0
     for p in range(len(lines)):
         line = lines[p]
         if line.k == 0 and line.margin == math.inf:
@@ -62,60 +62,60 @@ def press_lines(system: System, books: Books, h: float, kick: float, lead: float
         if 0 <= meet.gap < TURNED_OVER:
             line.widest = max(line.widest, 0.0 if meet.past else meet.gap)
             if was_open(line):
-                put(line.grip, no_spin(meet.normal))
+                put(line.shear_state, no_spin(meet.normal))
                 continue
         meet = where_friction_rubs(meet)
         velocity = relative_velocity(bodies, line, supports, meet)
         rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
-        sprung, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
-        if lead > 0 and push > 0 and line.push > 0:
-            push = normal_force(line, meet.gap, foreseen(line, rate, push, lead))
+        spring_force, push = normal_force(line, meet.gap, 0.0), normal_force(line, meet.gap, rate)
+        if steps_ahead > 0 and push > 0 and line.push > 0:
+            push = normal_force(line, meet.gap, foreseen(line, rate, push, steps_ahead))
         if (push > 0) != (line.push > 0) or (meet.gap < 0) != (line.depth > 0):
-            sprung, push = touched_forces(line, meet.gap, rate, h)
+            spring_force, push = touched_forces(line, meet.gap, rate, h)
             if line.due != 0:
                 books.touched[touched] = p
                 touched += 1
-        books.dashpots[line.group] -= 0.5 * h * (line.pressed + push - sprung) * rate
+        books.dashpots[line.group] -= 0.5 * h * (line.dashpot_force + push - spring_force) * rate
         if meet.past or line.past == 1:
             books.totals[0].joint_ends += lost_past_face_edge(line, meet, h * rate)
-        last, drag = read(line.dragged), no_spin(meet.normal)
+        last_shear, friction = read(line.shear_force), no_spin(meet.normal)
         if push <= 0:
             if push < 0 and line.push > 0:
-                drag = scaled(push / line.push, turned_along(meet.normal, last_friction(bodies, line, last)))
-            put(line.grip, no_spin(meet.normal))
+                friction = scaled(push / line.push, turned_along(meet.normal, last_friction(bodies, line, last_shear)))
+            put(line.shear_state, no_spin(meet.normal))
         elif line.k_s < math.inf:
-            drag = sprung_friction(bodies, line, meet.normal, slip, push, time_closed(line, meet.gap, rate, h))
+            friction = sprung_friction(bodies, line, meet.normal, slip, push, time_closed(line, meet.gap, rate, h))
         elif line.friction > 0:
             books.active[active] = p
-            list_rigid(system, line, (len(meet.normal) - 1) * active, meet, velocity, kick)
-            begin(system, line, (len(meet.normal) - 1) * active, shear_limit(line, push), kick, meet.normal)
+            list_rigid(system, line, (len(meet.normal) - 1) * active, meet, velocity, force_time)
+            begin(system, line, (len(meet.normal) - 1) * active, shear_limit(line, push), force_time, meet.normal)
             active += 1
-        mean = scaled(0.5 * h, plus(last, drag))
-        rubbed -= dot(mean, slip)
+        shear_impulse = scaled(0.5 * h, plus(last_shear, friction))
+        dissipated -= dot(shear_impulse, slip)
         if line.support >= 0:
-            work = plus(scaled(0.5 * h * (line.push + push), meet.normal), as_vector(meet.normal, mean))
-            put_in += carried(line, supports, work)
+            impulse = plus(scaled(0.5 * h * (line.push + push), meet.normal), as_vector(meet.normal, shear_impulse))
+            support_work += carried(line, supports, impulse)
         line.push, line.rate = push, rate
-        line.pressed = push - sprung if meet.gap < 0 or push < 0 else 0.0
+        line.dashpot_force = push - spring_force if meet.gap < 0 or push < 0 else 0.0
         line.depth, line.past = max(-meet.gap, 0.0), meet.past
-        put(line.dragged, drag)
+        put(line.shear_force, friction)
         if meet.gap == TURNED_OVER:
             line.k = line.c = line.friction = 0.0
-        force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
-        press_apart(books.apart, bodies, line, (meet.arm, meet.face_arm), force)
-    books.totals[0].friction += rubbed
-    books.totals[0].ground += put_in
+        force = plus(scaled(push, meet.normal), as_vector(meet.normal, friction))
+        add_line_force(books.pending, bodies, line, (meet.arm, meet.face_arm), force)
+    books.totals[0].friction += dissipated
+    books.totals[0].ground += support_work
     return active, touched
 
 
 @inlined
-def settle_touches(system: System, books: Books, count: int, kick: float) -> tuple[float, float]:
+def settle_touches(system: System, books: Books, count: int, force_time: float) -> tuple[float, float]:
     """Let the springs of lines that closed or opened in the step do the remaining work of their touch, see `touches`.
 
     Returns the energy that the halves of these impulses before the pose have taken, which a sample counts as held by
     the springs, and the work of the supports through them [J].
     """
-    stored_energy, put_in = 0.0, 0.0
+    stored_energy, support_work = 0.0, 0.0
     for i in range(count):
         books.impulse[i] = 0.0
     for _ in range(TOUCH_PASSES):
@@ -135,8 +135,8 @@ def settle_touches(system: System, books: Books, count: int, kick: float) -> tup
         line = system.lines[books.touched[i]]
         if line.support >= 0:
             impulse = 0.5 * books.impulse[i]
-            put_in += carried(line, system.supports, scaled(impulse, meeting(system, line).normal))
-        line.push, line.due = line.push + books.impulse[i] / kick, 0.0
+            support_work += carried(line, system.supports, scaled(impulse, meeting(system, line).normal))
+        line.push, line.due = line.push + books.impulse[i] / force_time, 0.0
         stored_energy -= 0.5 * books.impulse[i] * line.rate
-    books.totals[0].ground += put_in
-    return stored_energy, put_in
+    books.totals[0].ground += support_work
+    return stored_energy, support_work

@@ -102,9 +102,9 @@ def carried(row: Row, supports: Supports, direction: Vector) -> float:
 
 
 @inlined
-def stretched(bodies: Rows, face: int, grip: Array, normal: Vector, displacement: Vector) -> Vector:
+def stretched(bodies: Rows, face: int, shear_state: Array, normal: Vector, displacement: Vector) -> Vector:
     """Elongation of a shear spring in the axes of the world, after a displacement along the face [m]."""
-    kept = spin_components(grip, normal)
+    kept = spin_components(shear_state, normal)
     if face >= 0:
         kept = in_world(bodies[face], kept)
     return plus(turned_along(normal, kept), displacement)
@@ -119,12 +119,12 @@ def sprung_friction(bodies: Rows, line: Row, normal: Vector, slip: Vector, push:
     exceeds the limit, the spring stays as it is, since a longer spring would add energy.
     """
     limit = shear_limit(line, push)
-    grip = shortened(stretched(bodies, line.face, line.grip, normal, scaled(time, slip)), limit / line.k_s)
-    drag = shortened(minus(scaled(-line.k_s, grip), scaled(line.c_s, slip)), limit)
+    stretch = shortened(stretched(bodies, line.face, line.shear_state, normal, scaled(time, slip)), limit / line.k_s)
+    friction = shortened(minus(scaled(-line.k_s, stretch), scaled(line.c_s, slip)), limit)
     if line.face >= 0:
-        grip = in_body(bodies[line.face], grip)
-    put(line.grip, grip)
-    return drag
+        stretch = in_body(bodies[line.face], stretch)
+    put(line.shear_state, stretch)
+    return friction
 
 
 @inlined
@@ -132,18 +132,18 @@ def sheared(line: Row) -> float:
     """Energy in the shear spring of a line, or of a law of its joint [J], zero for rigid friction."""
     if line.k_s == math.inf:
         return 0.0
-    grip = read(line.grip)
-    energy: float = stored_along(line, dot(grip, grip))
+    stretch = read(line.shear_state)
+    energy: float = stored_along(line, dot(stretch, stretch))
     return energy
 
 
 @inlined
-def last_friction(bodies: Rows, line: Row, dragged: Vector) -> Vector:
-    """Friction of a line in the last step [N], of which `dragged` is that of its shear spring."""
+def last_friction(bodies: Rows, line: Row, shear_force: Vector) -> Vector:
+    """Friction of a line in the last step [N], of which `shear_force` is that of its shear spring."""
     if line.k_s < math.inf:
-        return dragged
-    grip = read(line.grip) if len(dragged) == 3 else (line.grip[0],)
-    return in_world(bodies[line.face], grip) if line.face >= 0 else grip
+        return shear_force
+    friction = read(line.shear_state) if len(shear_force) == 3 else (line.shear_state[0],)
+    return in_world(bodies[line.face], friction) if line.face >= 0 else friction
 
 
 @inlined
@@ -242,12 +242,12 @@ def combined(impulses: Vector, first: Vector, second: Vector) -> Vector:
 def strike(system: System, first: int, impulses: Vector) -> None:
     """Apply impulses along the tangential directions of a line to its body and to that of its face [N s]."""
     a, b = system.tangents[first], system.tangents[first + len(impulses) - 1]
-    body, kick = system.bodies[a.body], combined(impulses, read(a.direction), read(b.direction))
-    apply_impulse(body, kick)
+    body, impulse = system.bodies[a.body], combined(impulses, read(a.direction), read(b.direction))
+    apply_impulse(body, impulse)
     increase(body.spin, combined(impulses, read(a.spin), read(b.spin)))
     if a.face >= 0:
         face = system.bodies[a.face]
-        apply_impulse(face, scaled(-1.0, kick))
+        apply_impulse(face, scaled(-1.0, impulse))
         spin = combined(impulses, read(a.spin_of_face), read(b.spin_of_face))
         increase(face.spin, scaled(-1.0, spin))
 
@@ -261,17 +261,17 @@ def impulses_of(system: System, first: int, like: Vector) -> Vector:
 
 
 @inlined
-def begin(system: System, line: Row, first: int, friction: float, kick: float, like: Vector) -> None:
+def begin(system: System, line: Row, first: int, most: float, force_time: float, like: Vector) -> None:
     """Start the impulses of a line from the friction of the last step, within what the face can carry now [N]."""
-    limit: float = kick * friction
-    grip = scaled(kick, read(line.grip))
+    limit: float = force_time * most
+    impulse = scaled(force_time, read(line.shear_state))
     if line.face >= 0:
-        grip = in_world(system.bodies[line.face], grip)
+        impulse = in_world(system.bodies[line.face], impulse)
     if len(like) == 2:
-        impulses = shortened(grip, limit)
+        impulses = shortened(impulse, limit)
     else:
         a, b = system.tangents[first], system.tangents[first + 1]
-        impulses = shortened((dot(read(a.direction), grip), dot(read(b.direction), grip)), limit)
+        impulses = shortened((dot(read(a.direction), impulse), dot(read(b.direction), impulse)), limit)
     for i in range(len(like) - 1):
         row = system.tangents[first + i]
         row.impulse, row.limit = impulses[i], limit
@@ -315,7 +315,7 @@ def stop(system: System, first: int, like: Vector) -> float:
 
 
 @inlined
-def stick(system: System, active: Integers, count: int, kick: float) -> None:
+def stick(system: System, active: Integers, count: int, force_time: float) -> None:
     """Stop the slip of the lines that stick rigidly. Their impulses are in the rows of their directions [N s].
 
     Neighbouring lines share their bodies, so that the processor would wait for each before the next: a sweep takes
@@ -335,25 +335,25 @@ def stick(system: System, active: Integers, count: int, kick: float) -> None:
         if changed <= SETTLED * largest:
             break
     for i in range(count):
-        keep_rigid(system, system.lines[active[i]], each * i, kick, like)
+        keep_rigid(system, system.lines[active[i]], each * i, force_time, like)
 
 
 @inlined
-def keep_rigid(system: System, line: Row, first: int, kick: float, like: Vector) -> None:
+def keep_rigid(system: System, line: Row, first: int, force_time: float, like: Vector) -> None:
     """Keep the friction of a line that sticks rigidly for the next step [N], and its moments on the bodies."""
     impulses = impulses_of(system, first, like)
     if len(like) == 2:
-        line.grip[0] = impulses[0] / kick
+        line.shear_state[0] = impulses[0] / force_time
         return
     a, b = system.tangents[first], system.tangents[first + 1]
     lever = combined(impulses, read(a.lever), read(b.lever))
     add_momentum(system.bodies[a.body], lever)
-    grip = scaled(1 / kick, combined(impulses, read(a.direction), read(b.direction)))
+    friction = scaled(1 / force_time, combined(impulses, read(a.direction), read(b.direction)))
     if a.face >= 0:
         lever = combined(impulses, read(a.lever_on_face), read(b.lever_on_face))
         add_momentum(system.bodies[a.face], scaled(-1.0, lever))
-        grip = in_body(system.bodies[a.face], grip)
-    put(line.grip, grip)
+        friction = in_body(system.bodies[a.face], friction)
+    put(line.shear_state, friction)
 
 
 @inlined

@@ -30,9 +30,9 @@ def was_open(line: Row) -> bool:
 
 
 @inlined
-def foreseen(line: Row, rate: float, push: float, lead: float) -> float:
+def foreseen(line: Row, rate: float, push: float, steps_ahead: float) -> float:
     """Rate of a line some steps on [m/s], changed as in the last step and as the force that changes it has grown."""
-    ahead: float = rate + lead * (rate - line.rate) * min(push / line.push, 2.0)
+    ahead: float = rate + steps_ahead * (rate - line.rate) * min(push / line.push, 2.0)
     return ahead
 
 
@@ -108,7 +108,7 @@ def in_transit(line: Row, h: float) -> tuple[float, float]:
     """Work of the halves of the impulses of a touch that act after the pose [J]: the part that a sample counts as held
     by the spring, and the part that it counts as dissipated by the dashpot.
     """
-    by_spring = 0.5 * h * (line.push - line.pressed - normal_force(line, -line.depth, 0.0)) * line.rate
+    by_spring = 0.5 * h * (line.push - line.dashpot_force - normal_force(line, -line.depth, 0.0)) * line.rate
     if line.push < 0:
         work = 0.5 * h * line.push * line.rate
         return work, by_spring - work

@@ -33,10 +33,10 @@ class Actuators(Kind, Histories):
     """Springs and dashpots, `k` and `c` [N/m, N s/m], from a history to a point of a body along `between`.
 
     One without a body drives the centroid of all. `reach` is the displacement at the start of the history [m], and
-    `dragged` the part of the force of the last step that the dashpot had [N].
+    `dashpot_force` the part of the force of the last step that the dashpot had [N].
     """
 
-    own = ("k", "c", "reach", "dragged")
+    own_fields = ("k", "c", "reach", "dashpot_force")
     driven = True
     booked = ("actuators", "dashpots")
 
@@ -47,21 +47,21 @@ class Actuators(Kind, Histories):
         if not case.actuators:
             return (), cls(cls.table(d, 0), moving((), 1))
         actuators = tuple(case.actuators.values())
-        held = np.array([GROUND if each.block is None else case.body_of(each.block) for each in actuators])
-        direction, single = np.array([each.way for each in actuators]), (held >= 0)[:, None]
-        at = np.array([each.way if each.at is None else each.at for each in actuators])
-        at = np.where(single, at - bodies["rest"][held], 0.0)
-        change = np.einsum("nij,nj->ni", rotations(bodies)[held], at)
+        body = np.array([GROUND if each.block is None else case.body_of(each.block) for each in actuators])
+        direction, single = np.array([each.direction for each in actuators]), (body >= 0)[:, None]
+        at = np.array([each.direction if each.at is None else each.at for each in actuators])
+        at = np.where(single, at - bodies["rest"][body], 0.0)
+        change = np.einsum("nij,nj->ni", rotations(bodies)[body], at)
         mean = np.average(bodies["place"], axis=0, weights=bodies["mass"])
         table = cls.table(
             d,
             len(actuators),
-            body=held,
+            body=body,
             at=at,
             between=direction,
             k=np.array([each.stiffness for each in actuators]),
             c=np.array([each.damping for each in actuators]),
-            reach=(np.where(single, bodies["place"][held] + change, mean) * direction).sum(axis=1),
+            reach=(np.where(single, bodies["place"][body] + change, mean) * direction).sum(axis=1),
         )
         histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
         return tuple(case.actuators), cls(table, moving(histories, 1))
@@ -82,15 +82,15 @@ class Actuators(Kind, Histories):
 
     def remembered(self, t: float) -> Actuators:
         """Their displacements count from there."""
-        gone = places(self.drives, t)
-        self.rows["reach"] += gone[:, 0]
-        return Actuators(self.rows, self.drives._replace(moved=self.drives.moved - gone))
+        displacement = places(self.drives, t)
+        self.rows["reach"] += displacement[:, 0]
+        return Actuators(self.rows, self.drives._replace(moved=self.drives.moved - displacement))
 
     def going_on(self, before: Self) -> Self:
         """The same ones go on from where those before had driven their blocks."""
         same = ["body", "at", "between", "k", "c"]
         if len(before.rows) == len(self.rows) and not (before.rows[same] != self.rows[same]).any():
-            for name in ("pulled", "dragged", "reach"):
+            for name in ("force", "dashpot_force", "reach"):
                 self.rows[name] = before.rows[name]
             self.drives.moved[:] = before.drives.moved
         return self
@@ -104,20 +104,20 @@ class Actuators(Kind, Histories):
             row, direction = self.rows[i], read(self.rows[i].between)
             moved, speed = driven_place(row, system.bodies, direction)
             rate = drives.moving[i, 0] - speed
-            dragged = row.c * rate
-            force = row.k * (drives.moved[i, 0] - (moved - row.reach)) + dragged
-            books.links[row.account] += 0.5 * h * (row.pulled + force) * drives.moving[i, 0]
-            books.links[row.account + 1] += 0.5 * h * (row.dragged + dragged) * rate
-            row.pulled, row.dragged = force, dragged
+            dashpot_force = row.c * rate
+            force = row.k * (drives.moved[i, 0] - (moved - row.reach)) + dashpot_force
+            books.links[row.account] += 0.5 * h * (row.force + force) * drives.moving[i, 0]
+            books.links[row.account + 1] += 0.5 * h * (row.dashpot_force + dashpot_force) * rate
+            row.force, row.dashpot_force = force, dashpot_force
             drive(row, system.bodies, force, direction)
 
     @inlined
-    def hold(self, system: System, books: Books, energy: Row) -> None:
+    def add_energy(self, system: System, books: Books, energy: Row) -> None:
         """The energy of their springs, and their work."""
         for i in range(len(self.rows)):
             row = self.rows[i]
-            held = row.pulled - row.dragged
-            energy.elastic += 0.5 * held * held / row.k
+            spring_force = row.force - row.dashpot_force
+            energy.elastic += 0.5 * spring_force * spring_force / row.k
             energy.driven += books.links[row.account]
 
 

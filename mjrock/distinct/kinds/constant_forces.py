@@ -34,7 +34,7 @@ class ConstantForces(Kind, Table):
             add_force(body, plus(at, rotation_change(body, at)), read(row.between))
 
     @inlined
-    def hold(self, system: System, books: Books, energy: Row) -> None:
+    def add_energy(self, system: System, books: Books, energy: Row) -> None:
         """They have a potential."""
         for i in range(len(self.rows)):
             row = self.rows[i]

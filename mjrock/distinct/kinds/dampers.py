@@ -17,20 +17,21 @@ from .link import Kind, Named, Table, book_support, lengthening, pull, push_apar
 class Dampers(Kind, Table):
     """Dashpots, see `resistance`. They resist the rate of their length both ways.
 
-    `rate` is that of the last step [m/s], half a step before the pose, and `lead` by how many steps they look ahead.
+    `rate` is that of the last step [m/s], half a step before the pose, and `steps_ahead` by how many steps they look
+    ahead.
     """
 
-    own = (*DASHPOT, "rate", "lead")
+    own_fields = (*DASHPOT, "rate", "steps_ahead")
     booked = ("dashpots",)
 
     @classmethod
     def from_scene(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene."""
-        return cls.linking(scene.links.damped, scene.dampers.links.between, rate=0.0, lead=0.0)
+        return cls.linking(scene.links.damped, scene.dampers.links.between, rate=0.0, steps_ahead=0.0)
 
-    def look_ahead(self, lead: float) -> None:
+    def look_ahead(self, steps_ahead: float) -> None:
         """All of them."""
-        self.rows["lead"] = lead
+        self.rows["steps_ahead"] = steps_ahead
 
     def springs(self) -> tuple[Array, Array]:
         """No stiffness, and the coefficient of their dashpots [N/m, N s/m]."""
@@ -43,9 +44,9 @@ class Dampers(Kind, Table):
             damper = self.rows[i]
             now = pull(damper, system)
             rate = lengthening(damper, system, now)
-            lead = damper.lead if h > 0 else 0.0
-            force = -resistance(damper, rate + lead * (rate - damper.rate))
+            steps_ahead = damper.steps_ahead if h > 0 else 0.0
+            force = -resistance(damper, rate + steps_ahead * (rate - damper.rate))
             damper.rate = rate
-            books.links[damper.account] -= 0.5 * h * (force + damper.pulled) * rate
+            books.links[damper.account] -= 0.5 * h * (force + damper.force) * rate
             book_support(damper, system, books, now, force, h)
             push_apart(damper, system, now, force)

@@ -20,7 +20,7 @@ from ...scene.scene import Scene
 from ..rows import Fields, Row, Rows, numbers, rows, vectors
 from ..system import Books, System
 
-OF_A_LINE = (*Law._fields, "c_s", "margin", "grip")
+OF_A_LINE = (*Law._fields, "c_s", "margin", "shear_state")
 """Numbers of a contact line that a law can take over."""
 
 
@@ -30,14 +30,14 @@ class JointLaw:
     `act`, `stored`, `lost` and `holds` are compiled. The others have here what most laws need.
 
     Attributes:
-        rows: a row for each line of the joints, with the numbers of `table` and `own` ones; none where no joint has
+        rows: a row for each line of the joints, with the numbers of `table` and `own_fields`; none where no joint has
             the law.
         bond: what a joint of masonry with this law has for its bond.
         endless: numbers of a row that may be infinite.
     """
 
     rows: Rows
-    own: ClassVar[Fields] = []
+    own_fields: ClassVar[Fields] = []
     bond: ClassVar[type[Bond]]
     endless: ClassVar[tuple[str, ...]] = ("k_s", "margin")
 
@@ -47,9 +47,9 @@ class JointLaw:
         fields = [
             *numbers(*OF_A_LINE[:-1]),  # of the dry line; k is 0 for a line without this law
             *numbers("share"),  # the line's part of the area of the joint [-]
-            *numbers("gap", "push", "pressed"),  # gap [m], force, and force of the dashpot, of the last step [N]
-            *vectors(2 * d - 3, "grip", "dragged"),  # stretch of the shear spring [m], its force in the last step [N]
-            *cls.own,
+            *numbers("gap", "push", "dashpot_force"),  # gap [m], force, and force of the dashpot, of the last step [N]
+            *vectors(2 * d - 3, "shear_state", "shear_force"),  # stretch of the shear spring [m], its last force [N]
+            *cls.own_fields,
         ]
         if twice := {name for name, many in Counter(name for name, *_ in fields).items() if many > 1}:
             raise TypeError(f"{cls.__name__} has {', '.join(sorted(twice))} as a number of a joint too; name one anew")
@@ -83,8 +83,8 @@ class JointLaw:
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
-        """Add the forces at the pose of time t [s], keep them as `push` and `dragged`, and book what the last step, of
-        length h, took."""
+        """Add the forces at the pose of time t [s], keep them as `push` and `shear_force`, and book what the last step,
+        of length h, took."""
         raise NotImplementedError
 
     @inlined
@@ -112,9 +112,9 @@ class JointLaw:
         which = which & (self.rows["k"] > 0)
         if not which.any():
             return
-        for name in ("k", "c", "friction", "margin", "grip", "dragged"):
+        for name in ("k", "c", "friction", "margin", "shear_state", "shear_force"):
             lines[name][which] = self.rows[name][which]
-        for name in ("k", "grip", "dragged", "push"):
+        for name in ("k", "shear_state", "shear_force", "push"):
             self.rows[name][which] = 0.0
 
     def beyond(self, joint: Integers, found: Rows) -> Rows:

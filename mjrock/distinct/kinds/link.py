@@ -44,10 +44,10 @@ class Table(NamedTuple):
 class Kind:
     """A kind of links. It is a NamedTuple too, `Table` or one of its own, so that compiled loops know it.
 
-    `act` and `hold` are compiled. The others have here what most kinds need.
+    `act`, `settle` and `add_energy` are compiled. The others have here what most kinds need.
 
     Attributes:
-        rows: a row for each link, with the numbers of `table` and `own` ones.
+        rows: a row for each link, with the numbers of `table` and `own_fields`.
         further: what its rows have that is no number, such as integers.
         endless: numbers of a row that may be infinite.
         driven: whether histories drive them: actuators, whose forces responses have apart from those of links.
@@ -57,7 +57,7 @@ class Kind:
     """
 
     rows: Rows
-    own: ClassVar[tuple[str, ...]] = ()
+    own_fields: ClassVar[tuple[str, ...]] = ()
     further: ClassVar[Fields] = []
     endless: ClassVar[tuple[str, ...]] = INFINITE_IN_LAW
     driven: ClassVar[bool] = False
@@ -73,17 +73,17 @@ class Kind:
             *integers("number", "account"),  # of the link among all links, and of its first account
             *vectors(d, "at", "origin"),  # where, from the centroids of the two bodies [m]
             *vectors(d, "between"),  # from the anchor at rest [m]
-            *numbers("pulled"),  # force in the last step, negative where it pulls [N]
-            *numbers(*cls.own),
+            *numbers("force"),  # force in the last step, negative where it pulls [N]
+            *numbers(*cls.own_fields),
             *cls.further,
         ]
         return rows(np.dtype(fields), count, **{"anchor": -1, "anchor_block": -1, "support": -1} | columns)
 
     @classmethod
     def linking(cls, links: Links, between: Array, **columns: Array | Integers | float) -> Named:
-        """Links of a scene with these columns. Their other `own` numbers are those of the law of the links."""
+        """Links of a scene with these columns. Their other `own_fields` are those of the law of the links."""
         count = len(links.body)
-        taken: Columns = {name: links.law[name] for name in cls.own if name not in columns}
+        taken: Columns = {name: links.law[name] for name in cls.own_fields if name not in columns}
         taken |= {"body": links.body, "anchor": links.anchor_body, "anchor_block": links.anchor_block}
         taken |= {"at": links.at, "origin": links.anchor_at, "between": between}
         table = cls.table(between.shape[1], count, **columns | taken if count else {})
@@ -100,11 +100,11 @@ class Kind:
         raise NotImplementedError
 
     @inlined
-    def hold(self, system: System, books: Books, energy: Row) -> None:
+    def add_energy(self, system: System, books: Books, energy: Row) -> None:
         """Add what the links hold at the pose to the energy of a sample [J], see `system.ENERGY`."""
 
     @inlined
-    def settle(self, system: System, books: Books, kick: float) -> tuple[float, float]:
+    def settle(self, system: System, books: Books, force_time: float) -> tuple[float, float]:
         """Let the links do what is left when all forces have acted for a time [s]. Returns the energy that the half of
         it before the pose has taken, which a sample counts as held by them, and the work of supports in that half
         [J]."""
@@ -123,7 +123,7 @@ class Kind:
         directions = between / np.linalg.norm(between, axis=1)[:, None]
         return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, directions, len(bodies))
 
-    def look_ahead(self, lead: float) -> None:
+    def look_ahead(self, steps_ahead: float) -> None:
         """Let dashpots look ahead by some steps, see `step_length.LEAD`."""
 
     def velocity_changes(self, t: float, until: float) -> tuple[Integers, Array]:
@@ -195,8 +195,8 @@ def book_support(link: Row, system: System, books: Books, now: Pull, force: floa
     """Book the work that the support of a link does in a time h, from the force of the last step to this one [N].
 
     The force is then that of the last step."""
-    books.totals[0].ground += 0.5 * h * (link.pulled + force) * carried_along(link, system, now)
-    link.pulled = force
+    books.totals[0].ground += 0.5 * h * (link.force + force) * carried_along(link, system, now)
+    link.force = force
 
 
 @inlined

@@ -26,7 +26,8 @@ KINDS: tuple[type[Kind], ...] = (Ties, Dampers, OwnLinks, Actuators, ConstantFor
 LAWS: tuple[type[JointLaw], ...] = (Bonds, OwnLaws)
 """The laws of joints beside the dry one, which all lines have."""
 
-act, settle, hold, stored, lost, holds = (method(name) for name in ("act", "settle", "hold", "stored", "lost", "holds"))
+act, settle, add_energy = map(method, ("act", "settle", "add_energy"))
+stored, lost, holds = map(method, ("stored", "lost", "holds"))
 
 
 def links_of(scene: Scene, case: AnyCase, bodies: Rows) -> tuple[tuple[tuple[str, ...], ...], Tables]:
@@ -64,25 +65,25 @@ def act_all(tables: Tables, system: System, books: Books, t: float, h: float) ->
 
 
 @inlined
-def settle_all(links: Tables, system: System, books: Books, kick: float) -> tuple[float, float]:
+def settle_all(links: Tables, system: System, books: Books, force_time: float) -> tuple[float, float]:
     """Let the links of all kinds do what is left, see `Kind.settle`."""
     if len(links) > 0:
         (dissipated, put_in), (others, others_in) = (
-            settle(links[0], system, books, kick),
-            settle_all(links[1:], system, books, kick),
+            settle(links[0], system, books, force_time),
+            settle_all(links[1:], system, books, force_time),
         )
         return dissipated + others, put_in + others_in
     return 0.0, 0.0
 
 
 @inlined
-def hold_all(links: Tables, system: System, books: Books, energy: Row, pulled: Array) -> None:
+def record_links(links: Tables, system: System, books: Books, energy: Row, forces: Array) -> None:
     """Add what the links of all kinds hold to the energy of a sample, and keep the force of each [N]."""
     if len(links) > 0:
-        hold(links[0], system, books, energy)
+        add_energy(links[0], system, books, energy)
         for i in range(len(links[0].rows)):
-            pulled[links[0].rows[i].number] = links[0].rows[i].pulled
-        hold_all(links[1:], system, books, energy, pulled)
+            forces[links[0].rows[i].number] = links[0].rows[i].force
+        record_links(links[1:], system, books, energy, forces)
 
 
 @inlined
@@ -107,15 +108,15 @@ def lost_by_laws(laws: Tables, p: int) -> float:
 
 
 @inlined
-def with_laws(laws: Tables, p: int, push: float, drag: Vector, holds: bool) -> tuple[float, Vector, bool]:
+def with_laws(laws: Tables, p: int, push: float, friction: Vector, holds: bool) -> tuple[float, Vector, bool]:
     """Force of line p along its normal and its face in the last step with that of its laws [N], and whether one holds
     it, from those of the dry line."""
     if len(laws) > 0:
         if p < len(laws[0].rows) and laws[0].rows[p].k > 0:
             row = laws[0].rows[p]
-            push, drag, holds = push + row.push, plus(drag, read(row.dragged)), True
-        return with_laws(laws[1:], p, push, drag, holds)
-    return push, drag, holds
+            push, friction, holds = push + row.push, plus(friction, read(row.shear_force)), True
+        return with_laws(laws[1:], p, push, friction, holds)
+    return push, friction, holds
 
 
 @inlined

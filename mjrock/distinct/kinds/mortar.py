@@ -25,7 +25,7 @@ from ..contacts.friction import along_face, as_vector, carried, sheared, shorten
 from ..rotation import in_body
 from ..rows import Fields, Row, Rows, numbers
 from ..system import Books, System
-from ..thread import press_apart
+from ..thread import add_line_force
 from .law import JointLaw
 from .link import Table
 
@@ -38,7 +38,7 @@ INTEGRITY_OF_CRACKED = 0.5
 class Bonds(JointLaw, Table):
     """Bonds, by `bond_law`: `integrity` is what is left of each, 1 - D [-]."""
 
-    own: ClassVar[Fields] = [
+    own_fields: ClassVar[Fields] = [
         *numbers("residual", "friction_drop"),  # friction without bond, and what a whole bond adds to it [-]
         *numbers("tension", "cohesion", "strength"),  # of the line [N], `strength` in crushing, or infinite
         *numbers("opening_rate", "slip_rate", "crushing_rate"),  # of its loss [1/m], see `bond_law`
@@ -70,7 +70,7 @@ class Bonds(JointLaw, Table):
         if bond.crushing is not None and bond.crushing_energy is not None:
             columns["peak"], columns["hardening"] = bond.crushing * area, bond.hardening or 0.0
             columns["crushing_rate"] = bond.crushing / (bond.crushing_energy - bond.energy_of_hardening)
-        lines["friction"][which], lines["grip"][which] = 0.0, 0.0
+        lines["friction"][which], lines["shear_state"][which] = 0.0, 0.0
         if bond.tension > 0:
             columns["secant"] = lines["k"][which]
             lines["k"][which], lines["c"][which], lines["margin"][which] = 0.0, 0.0, np.inf
@@ -141,17 +141,17 @@ def make_dry(books: Books, line: Row, bond: Row) -> None:
         line.k, line.c, line.margin = bond.k, bond.c, bond.margin
     if bond.strength == math.inf:
         line.friction = bond.residual
-        put(line.grip, read(bond.grip))
-        put(line.dragged, read(bond.dragged))
-        put(bond.grip, no_spin(read(line.normal)))
-        put(bond.dragged, no_spin(read(line.normal)))
+        put(line.shear_state, read(bond.shear_state))
+        put(line.shear_force, read(bond.shear_force))
+        put(bond.shear_state, no_spin(read(line.normal)))
+        put(bond.shear_force, no_spin(read(line.normal)))
         bond.k = bond.push = 0.0
 
 
 @inlined
 def crush_line(books: Books, line: Row, bond: Row, gap: float) -> float:
     """Crush a line at a gap [m]: its face moves back. Returns the distance [m]."""
-    closing = crush(bond, gap, bond.k_s * norm(read(bond.grip)))
+    closing = crush(bond, gap, bond.k_s * norm(read(bond.shear_state)))
     if closing > 0:
         back = scaled(-closing, read(line.normal))
         increase(line.origin, back)
@@ -173,14 +173,14 @@ def slide(bodies: Rows, line: Row, bond: Row, elongation: Vector, slip: Vector, 
     """
     bond.friction = bond.residual + bond.friction_drop * bond.integrity
     limit = bonded_limit(bond, push)
-    grip = shortened(elongation, limit / bond.k_s)
+    stretch = shortened(elongation, limit / bond.k_s)
     c_s = bond.c_s * (1 - bond.undamped * bond.secant / bond.k)
-    drag = shortened(minus(scaled(-bond.k_s, grip), scaled(c_s, slip)), limit)
-    dissipated = wear(bond, norm(minus(elongation, grip)))
+    friction = shortened(minus(scaled(-bond.k_s, stretch), scaled(c_s, slip)), limit)
+    dissipated = wear(bond, norm(minus(elongation, stretch)))
     if line.face >= 0:
-        grip = in_body(bodies[line.face], grip)
-    put(bond.grip, grip)
-    return drag, dissipated
+        stretch = in_body(bodies[line.face], stretch)
+    put(bond.shear_state, stretch)
+    return friction, dissipated
 
 
 @inlined
@@ -201,14 +201,14 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
                 books.totals[0].tension += 0.5 * before * gap * (secant - bond.secant)
     velocity = relative_velocity(bodies, line, supports, meet)
     rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
-    pressed = -(1 - bond.undamped) * bond.c * bond.secant / bond.k * rate
-    push = pressed - bond.secant * gap
-    books.dashpots[line.group] -= 0.5 * h * (bond.pressed + pressed) * rate
-    last = read(bond.dragged)
+    damping = -(1 - bond.undamped) * bond.c * bond.secant / bond.k * rate
+    push = damping - bond.secant * gap
+    books.dashpots[line.group] -= 0.5 * h * (bond.dashpot_force + damping) * rate
+    last = read(bond.shear_force)
     stored_before = sheared(bond)
-    elongation = stretched(bodies, line.face, bond.grip, meet.normal, scaled(h, slip))
-    drag, dissipated = slide(bodies, line, bond, elongation, slip, push + normal_force(line, gap, rate))
-    mean = scaled(0.5 * h, plus(last, drag))
+    elongation = stretched(bodies, line.face, bond.shear_state, meet.normal, scaled(h, slip))
+    friction, dissipated = slide(bodies, line, bond, elongation, slip, push + normal_force(line, gap, rate))
+    mean = scaled(0.5 * h, plus(last, friction))
     done = -dot(mean, slip)
     dissipated = min(dissipated, max(done + stored_before - sheared(bond), 0.0))  # no more than there is
     books.totals[0].slip += dissipated
@@ -216,10 +216,10 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
     if line.support >= 0:
         work = plus(scaled(0.5 * h * (bond.push + push), meet.normal), as_vector(meet.normal, mean))
         books.totals[0].ground += carried(line, supports, work)
-    bond.gap, bond.push, bond.pressed = gap, push, pressed
+    bond.gap, bond.push, bond.dashpot_force = gap, push, damping
     line.widest = max(line.widest, gap)
-    put(bond.dragged, drag)
+    put(bond.shear_force, friction)
     if bond.integrity > INTEGRITY_OF_CRACKED:
         bond.age += h
-    force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
-    press_apart(books.apart, bodies, line, (meet.arm, meet.face_arm), force)
+    force = plus(scaled(push, meet.normal), as_vector(meet.normal, friction))
+    add_line_force(books.pending, bodies, line, (meet.arm, meet.face_arm), force)

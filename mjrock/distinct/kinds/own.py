@@ -23,23 +23,14 @@ from ...compiled import by_type, inlined
 from ...geometry.vectors import dot, no_spin, plus, put, read, scaled
 from ...problem.masonry.laws.joint_law import normal_force, stored
 from ...problem.masonry.laws.own_law import OF_K_N, Own
-from ...problem.wall.user_law import (
-    ANSWERS,
-    OF_DAMPING,
-    OF_DISSIPATED,
-    OF_ENERGY,
-    OF_LOST,
-    OF_STRESS,
-    ROOM,
-    layout,
-)
+from ...problem.wall.user_law import ANSWERS, OF_DAMPING, OF_DISSIPATED, OF_ENERGY, OF_LOST, OF_STRESS, ROOM, layout
 from ...quantities import GRAVITY, Array, Flags, Integers
 from ...scene.scene import Scene
 from ..contacts.faces import meeting, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sprung_friction
 from ..rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
 from ..system import Books, System
-from ..thread import press_apart
+from ..thread import add_line_force
 from .law import JointLaw
 from .link import Table
 
@@ -99,7 +90,7 @@ def address_of(kind: Any) -> int:
 class OwnLaws(JointLaw, Table):
     """Own laws of joints."""
 
-    own: ClassVar[Fields] = [
+    own_fields: ClassVar[Fields] = [
         *integers("address"),  # of its text in this process, zero for a line without an own law
         *integers("joint"),  # number of the joint that the law is given for
         *numbers("area"),  # of the line [m2]
@@ -114,16 +105,16 @@ class OwnLaws(JointLaw, Table):
         """Lines begin with the largest stiffness of their law."""
         law = super().from_scene(scene, lines)
         weight, joint = GRAVITY * float(scene.bodies.mass.sum()), scene.contacts.joint
-        for i, own in enumerate(scene.contacts.bonds):
-            if isinstance(own, Own):
+        for i, bond in enumerate(scene.contacts.bonds):
+            if isinstance(bond, Own):
                 which = joint == i
                 law.rows["joint"][which] = i
                 area = np.asarray(scene.contacts.area)[which]
-                deepest = max(float(scene.bears[which].max()), own.closing_at(weight / float(area.sum())))
-                k, c = own.stiffest(DEEPER * deepest)
+                deepest = max(float(scene.bears[which].max()), bond.closing_at(weight / float(area.sum())))
+                k, c = bond.stiffest(DEEPER * deepest)
                 lines["k"][which] = np.where(law.rows["pulls"][which] > 0, 0.0, k * area)
                 law.rows["stiffest"][which] = k * area
-                law.rows["strongest"][which] = c * area if own.damps else law.rows["c"][which]
+                law.rows["strongest"][which] = c * area if bond.damps else law.rows["c"][which]
         return law
 
     def begin(self, lines: Rows, which: Flags, bond: Own, area: Array) -> None:
@@ -147,23 +138,23 @@ class OwnLaws(JointLaw, Table):
     def act(self, system: System, books: Books, t: float, h: float) -> None:
         """They answer at the pose."""
         for p in range(len(self.rows)):
-            line, own = system.lines[p], self.rows[p]
-            if own.k > 0:
-                if own.pulls > 0 and own.values[OF_LOST] > 1 - GONE:
-                    press_only(books, line, own)
-                if own.pulls > 0:
-                    hold_by_law(system, books, line, own, h)
+            line, law = system.lines[p], self.rows[p]
+            if law.k > 0:
+                if law.pulls > 0 and law.values[OF_LOST] > 1 - GONE:
+                    press_only(books, line, law)
+                if law.pulls > 0:
+                    hold_by_law(system, books, line, law, h)
                 else:
-                    press_by_law(system, books, line, own, h)
+                    press_by_law(system, books, line, law, h)
 
     @inlined
     def stored(self) -> tuple[float, float]:
         """Of laws that pull. The energy of the others is in their lines."""
         energy = 0.0
         for p in range(len(self.rows)):
-            own = self.rows[p]
-            if own.k > 0 and own.pulls > 0:
-                energy += own.area * own.values[OF_ENERGY]
+            law = self.rows[p]
+            if law.k > 0 and law.pulls > 0:
+                energy += law.area * law.values[OF_ENERGY]
         return energy, 0.0
 
     @inlined
@@ -184,7 +175,7 @@ class OwnLaws(JointLaw, Table):
 
     def release(self, lines: Rows, which: Flags) -> None:
         """A line that only presses keeps the spring of its law."""
-        for name in ("k", "push", "dragged"):
+        for name in ("k", "push", "shear_force"):
             self.rows[name][: len(which)][which] = 0.0
 
     def beyond(self, joint: Integers, found: Rows) -> Rows:
@@ -201,7 +192,7 @@ class OwnLaws(JointLaw, Table):
                 law[name] *= part
             law["k"], law["c"], law["pulls"] = found["k"][which], found["c"][which], 0.0
             law["values"][:, : len(ANSWERS)] = 0.0
-            for name in ("push", "pressed", "gap", "grip", "dragged"):
+            for name in ("push", "dashpot_force", "gap", "shear_state", "shear_force"):
                 law[name] = 0.0
             added[which] = law
         return added
@@ -231,9 +222,9 @@ class OwnLaws(JointLaw, Table):
     @staticmethod
     def bend(laws: Rows, lines: Rows, depth: Array) -> None:
         """Springs of the law at some depths."""
-        own = laws["k"] > 0 if len(laws) else np.zeros(0, dtype=bool)
-        lines["c"][: len(own)][own & (laws["damps"] > 0)] = 0.0
-        for i in np.flatnonzero(own & (depth[: len(own)] > 0)).tolist():
+        has_law = laws["k"] > 0 if len(laws) else np.zeros(0, dtype=bool)
+        lines["c"][: len(has_law)][has_law & (laws["damps"] > 0)] = 0.0
+        for i in np.flatnonzero(has_law & (depth[: len(has_law)] > 0)).tolist():
             law, closing = laws[i], float(depth[i])
             answer(law.values, law.address, closing, 0.0)
             lines["k"][i] = law.area * law.values[OF_STRESS] / closing
@@ -249,31 +240,31 @@ class OwnLaws(JointLaw, Table):
 
     def going_on(self, now: Self) -> Self:
         """Addresses are those of this process."""
-        own = self.rows["address"] != 0
+        has_law = self.rows["address"] != 0
         addresses = dict(zip(now.rows["joint"].tolist(), now.rows["address"].tolist(), strict=True))
-        self.rows["address"][own] = [addresses[joint] for joint in self.rows["joint"][own].tolist()]
+        self.rows["address"][has_law] = [addresses[joint] for joint in self.rows["joint"][has_law].tolist()]
         return self
 
 
 @inlined
-def press_only(books: Books, line: Row, own: Row) -> None:
+def press_only(books: Books, line: Row, law: Row) -> None:
     """Make a line, whose law has lost its tension, press only."""
-    if own.gap > 0:
-        books.totals[0].tension += own.area * own.values[OF_ENERGY]
-    line.margin, own.pulls, own.push, own.pressed = own.margin, 0.0, 0.0, 0.0
-    line.c = own.c if own.damps == 0 else 0.0
-    put(own.dragged, no_spin(read(line.normal)))
+    if law.gap > 0:
+        books.totals[0].tension += law.area * law.values[OF_ENERGY]
+    line.margin, law.pulls, law.push, law.dashpot_force = law.margin, 0.0, 0.0, 0.0
+    line.c = law.c if law.damps == 0 else 0.0
+    put(law.shear_force, no_spin(read(line.normal)))
 
 
 @inlined
-def update_by_law(own: Row, books: Books, closing: float, rate: float, h: float) -> None:
+def update_by_law(law: Row, books: Books, closing: float, rate: float, h: float) -> None:
     """Evaluate a law at a closing [m] that grows at a rate [m/s], and book the energy that its memory has dissipated
     since the last pose, a time h ago [s]."""
-    stress, energy = own.values[OF_STRESS], own.values[OF_ENERGY]
-    answer(own.values, own.address, closing, rate)
-    if own.values[OF_DISSIPATED] != 0 and h > 0:
-        work = 0.5 * h * (stress + own.values[OF_STRESS]) * rate
-        dissipated = own.area * (work - (own.values[OF_ENERGY] - energy))
+    stress, energy = law.values[OF_STRESS], law.values[OF_ENERGY]
+    answer(law.values, law.address, closing, rate)
+    if law.values[OF_DISSIPATED] != 0 and h > 0:
+        work = 0.5 * h * (stress + law.values[OF_STRESS]) * rate
+        dissipated = law.area * (work - (law.values[OF_ENERGY] - energy))
         if closing > 0:
             books.totals[0].crushing += dissipated
         else:
@@ -281,21 +272,21 @@ def update_by_law(own: Row, books: Books, closing: float, rate: float, h: float)
 
 
 @inlined
-def press_by_law(system: System, books: Books, line: Row, own: Row, h: float) -> None:
+def press_by_law(system: System, books: Books, line: Row, law: Row, h: float) -> None:
     """Give a line the spring and the dashpot that its law has at the pose."""
     meet = meeting(system, line)
-    if meet.gap >= 0 and (own.remembers == 0 or meet.past):
-        own.values[OF_STRESS] = own.values[OF_ENERGY] = 0.0
+    if meet.gap >= 0 and (law.remembers == 0 or meet.past):
+        law.values[OF_STRESS] = law.values[OF_ENERGY] = 0.0
         return
     rate = -dot(meet.normal, relative_velocity(system.bodies, line, system.supports, meet))
     closing = -meet.gap
-    update_by_law(own, books, closing, rate, h)
+    update_by_law(law, books, closing, rate, h)
     if closing > NO_CLOSING:
         energy, force = stored(line, -line.depth), normal_force(line, -line.depth, 0.0)
-        line.k = own.area * own.values[OF_STRESS] / closing
-        line.bent = 2 * own.area * own.values[OF_ENERGY] / (closing * closing) - line.k
-        if own.damps > 0:
-            line.c = own.area * own.values[OF_DAMPING] / rate if abs(rate) > NO_RATE else 0.0
+        line.k = law.area * law.values[OF_STRESS] / closing
+        line.bent = 2 * law.area * law.values[OF_ENERGY] / (closing * closing) - line.k
+        if law.damps > 0:
+            line.c = law.area * law.values[OF_DAMPING] / rate if abs(rate) > NO_RATE else 0.0
         if meet.past or line.past == 1:  # `lost_past_face_edge` takes the spring of this pose for that of the last one
             energy -= stored(line, -line.depth)
             force -= normal_force(line, -line.depth, 0.0)
@@ -303,29 +294,29 @@ def press_by_law(system: System, books: Books, line: Row, own: Row, h: float) ->
 
 
 @inlined
-def hold_by_law(system: System, books: Books, line: Row, own: Row, h: float) -> None:
+def hold_by_law(system: System, books: Books, line: Row, law: Row, h: float) -> None:
     """Add the forces of a law that pulls, with its friction."""
     bodies, supports = system.bodies, system.supports
     meet = where_friction_rubs(meeting(system, line))
     velocity = relative_velocity(bodies, line, supports, meet)
     rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
-    update_by_law(own, books, -meet.gap, -rate, h)
-    pressed = own.area * own.values[OF_DAMPING]
-    if own.damps == 0:
-        pressed = -own.c * rate
+    update_by_law(law, books, -meet.gap, -rate, h)
+    damping = law.area * law.values[OF_DAMPING]
+    if law.damps == 0:
+        damping = -law.c * rate
         if meet.gap > 0:
-            pressed *= min(-own.area * own.values[OF_STRESS] / (own.k * meet.gap), 1.0)
-    push = pressed + own.area * own.values[OF_STRESS]
-    books.dashpots[line.group] -= 0.5 * h * (own.pressed + pressed) * rate
-    last = read(own.dragged)
-    drag = sprung_friction(bodies, line, meet.normal, slip, max(push, 0.0), h)
-    mean = scaled(0.5 * h, plus(last, drag))
+            damping *= min(-law.area * law.values[OF_STRESS] / (law.k * meet.gap), 1.0)
+    push = damping + law.area * law.values[OF_STRESS]
+    books.dashpots[line.group] -= 0.5 * h * (law.dashpot_force + damping) * rate
+    last = read(law.shear_force)
+    friction = sprung_friction(bodies, line, meet.normal, slip, max(push, 0.0), h)
+    mean = scaled(0.5 * h, plus(last, friction))
     books.totals[0].friction -= dot(mean, slip)
     if line.support >= 0:
-        work = plus(scaled(0.5 * h * (own.push + push), meet.normal), as_vector(meet.normal, mean))
+        work = plus(scaled(0.5 * h * (law.push + push), meet.normal), as_vector(meet.normal, mean))
         books.totals[0].ground += carried(line, supports, work)
-    own.gap, own.push, own.pressed = meet.gap, push, pressed
+    law.gap, law.push, law.dashpot_force = meet.gap, push, damping
     line.widest = max(line.widest, meet.gap)
-    put(own.dragged, drag)
-    force = plus(scaled(push, meet.normal), as_vector(meet.normal, drag))
-    press_apart(books.apart, bodies, line, (meet.arm, meet.face_arm), force)
+    put(law.shear_force, friction)
+    force = plus(scaled(push, meet.normal), as_vector(meet.normal, friction))
+    add_line_force(books.pending, bodies, line, (meet.arm, meet.face_arm), force)

@@ -21,11 +21,11 @@ class OwnLinks(Kind, Table):
     """Links with a law of their own, by the length that each has beyond the one as drawn, `reach` [m].
 
     `stiffest` and `strongest` are the spring and the dashpot for which steps are short enough [N/m, N s/m]. `rate` is
-    that of the last step [m/s], `dragged` the force of the dashpot in it [N], and `lead` by how many steps dashpots
-    look ahead.
+    that of the last step [m/s], `dashpot_force` that of the dashpot in it [N], and `steps_ahead` by how many steps
+    dashpots look ahead.
     """
 
-    own = ("reach", "stiffest", "strongest", "rate", "dragged", "lead")
+    own_fields = ("reach", "stiffest", "strongest", "rate", "dashpot_force", "steps_ahead")
     further: ClassVar[Fields] = [*integers("address"), ("values", float, (ROOM,))]
     booked = ("dashpots",)
 
@@ -35,7 +35,7 @@ class OwnLinks(Kind, Table):
         links = scene.links.owned
         laws = [law for law in links.user_laws if law is not None]
         between = scene.bodies.between(links.body, links.at, links.anchor_body, links.anchor_at)
-        columns: dict[str, Any] = {name: 0.0 for name in cls.own}
+        columns: dict[str, Any] = {name: 0.0 for name in cls.own_fields}
         if laws:
             k, c = np.array([law.stiffest for law in laws]).T
             columns |= {"reach": np.linalg.norm(between, axis=1), "stiffest": k, "strongest": c}
@@ -47,9 +47,9 @@ class OwnLinks(Kind, Table):
         """The largest ones within the strokes."""
         return np.asarray(self.rows["stiffest"]), np.asarray(self.rows["strongest"])
 
-    def look_ahead(self, lead: float) -> None:
+    def look_ahead(self, steps_ahead: float) -> None:
         """All of them."""
-        self.rows["lead"] = lead
+        self.rows["steps_ahead"] = steps_ahead
 
     def going_on(self, before: Self) -> Self:
         """Addresses are those of this process."""
@@ -64,21 +64,21 @@ class OwnLinks(Kind, Table):
             link = self.rows[i]
             now = pull(link, system)
             rate = lengthening(link, system, now)
-            ahead = rate + (link.lead if h > 0 else 0.0) * (rate - link.rate)
+            ahead = rate + (link.steps_ahead if h > 0 else 0.0) * (rate - link.rate)
             bears, energy_before = link.values[OF_STRESS], link.values[OF_ENERGY]
             answer(link.values, link.address, now.length - link.reach, ahead)
-            dragged = link.values[OF_DAMPING]
-            books.links[link.account] += 0.5 * h * (link.dragged + dragged) * rate
+            dashpot_force = link.values[OF_DAMPING]
+            books.links[link.account] += 0.5 * h * (link.dashpot_force + dashpot_force) * rate
             if link.values[OF_DISSIPATED] != 0 and h > 0:
                 work = 0.5 * h * (bears + link.values[OF_STRESS]) * rate
                 books.links[link.account] += work - (link.values[OF_ENERGY] - energy_before)
-            link.rate, link.dragged = rate, dragged
-            force = -link.values[OF_STRESS] - dragged
+            link.rate, link.dashpot_force = rate, dashpot_force
+            force = -link.values[OF_STRESS] - dashpot_force
             book_support(link, system, books, now, force, h)
             push_apart(link, system, now, force)
 
     @inlined
-    def hold(self, system: System, books: Books, energy: Row) -> None:
+    def add_energy(self, system: System, books: Books, energy: Row) -> None:
         """What their laws hold."""
         for i in range(len(self.rows)):
             energy.elastic += self.rows[i].values[OF_ENERGY]

@@ -23,13 +23,13 @@ class Ties(Kind, Table):
     """Springs with a slider, by the law of `LinkLaw`.
 
     `k` [N/m] acts from the length `reach` on [m], which the slider moves. It yields at the forces `strength` and `push`
-    either way [N]. `drawn` is its plastic elongation and `ultimate` the limit of that [m]. It was `broken` at a time
+    either way [N]. `plastic` is its plastic elongation and `ultimate` the limit of that [m]. It was `broken` at a time
     [s], infinite for one that holds. Where it has gone taut or slack in the last step, `struck` is its force beyond
     that of its law [N], `due` what its spring is still to do for that [kg], and `transit` the work that is still to
     come [J]. `rate` is the rate of its length in the last step [m/s].
     """
 
-    own = ("k", "reach", "strength", "push", "ultimate", "drawn", "broken", "struck", "due", "transit", "rate")
+    own_fields = ("k", "reach", "strength", "push", "ultimate", "plastic", "broken", "struck", "due", "transit", "rate")
     endless = (*INFINITE_IN_LAW, "broken")
     booked = ("ties", "broken")
 
@@ -37,7 +37,7 @@ class Ties(Kind, Table):
     def from_scene(cls, scene: Scene, case: AnyCase, bodies: Rows) -> Named:
         """Those of a scene, where they bear nothing at rest if they push too."""
         ties = scene.ties
-        begun = dict.fromkeys(("drawn", "struck", "due", "transit", "rate"), 0.0)
+        begun = dict.fromkeys(("plastic", "struck", "due", "transit", "rate"), 0.0)
         return cls.linking(scene.links.sprung, ties.links.between, reach=ties.reach, broken=math.inf, **begun)
 
     def remembered(self, t: float) -> Ties:
@@ -51,32 +51,32 @@ class Ties(Kind, Table):
         for i in range(len(self.rows)):
             tie = self.rows[i]
             if t >= tie.broken:
-                tie.pulled = 0.0
+                tie.force = 0.0
                 continue
             now = pull(tie, system)
             meet_or_leave(tie, system, books, now, h)
             beyond = now.length - tie.reach - tie.strength / tie.k
             shorter = tie.reach - now.length - tie.push / tie.k
             if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
-                left = tie.ultimate - tie.drawn
-                tie.drawn, tie.reach = tie.drawn + min(beyond, left), tie.reach + min(beyond, left)
-                books.links[tie.account] += tie.strength * min(beyond, left)
-                if beyond >= left:
-                    since = since_broken(beyond - left, lengthening(tie, system, now), h)
+                remaining = tie.ultimate - tie.plastic
+                tie.plastic, tie.reach = tie.plastic + min(beyond, remaining), tie.reach + min(beyond, remaining)
+                books.links[tie.account] += tie.strength * min(beyond, remaining)
+                if beyond >= remaining:
+                    since = since_broken(beyond - remaining, lengthening(tie, system, now), h)
                     book_support(tie, system, books, now, -tie.strength, h - since)
                     tie.broken, books.links[tie.account + 1] = t - since, 0.5 * tie.strength**2 / tie.k
-                    tie.pulled = -pulled_until_broken(tie, since, h)
-                    push_apart(tie, system, now, tie.pulled)
+                    tie.force = -pulled_until_broken(tie, since, h)
+                    push_apart(tie, system, now, tie.force)
                     continue
             elif tie.push > 0 and shorter > 0:  # it slips the other way
-                tie.drawn, tie.reach = tie.drawn + shorter, tie.reach - shorter
+                tie.plastic, tie.reach = tie.plastic + shorter, tie.reach - shorter
                 books.links[tie.account] += tie.push * shorter
             force = -tie.k * elongation(tie, now.length)
             book_support(tie, system, books, now, force, h)
             push_apart(tie, system, now, force + tie.struck)
 
     @inlined
-    def settle(self, system: System, books: Books, kick: float) -> tuple[float, float]:
+    def settle(self, system: System, books: Books, force_time: float) -> tuple[float, float]:
         """The second impulse of those that have gone taut or slack, see `touches`."""
         dissipated, put_in = 0.0, 0.0
         for i in range(len(self.rows)):
@@ -89,12 +89,12 @@ class Ties(Kind, Table):
                     apply_impulse_at(system.bodies[tie.anchor], now.anchor_arm, scaled(-impulse, now.direction))
                 put_in += 0.5 * impulse * carried_along(tie, system, now)
                 dissipated -= 0.5 * impulse * tie.rate
-                tie.struck, tie.due = tie.struck + impulse / kick, 0.0
+                tie.struck, tie.due = tie.struck + impulse / force_time, 0.0
         books.totals[0].ground += put_in
         return dissipated, put_in
 
     @inlined
-    def hold(self, system: System, books: Books, energy: Row) -> None:
+    def add_energy(self, system: System, books: Books, energy: Row) -> None:
         """What their springs hold."""
         for i in range(len(self.rows)):
             tie = self.rows[i]
@@ -113,7 +113,7 @@ def meet_or_leave(tie: Row, system: System, books: Books, now: Pull, h: float) -
     if tie.push > 0 or h == 0:
         return
     tie.rate = lengthening(tie, system, now)
-    longer, pull_before = now.length - tie.reach, -tie.pulled
+    longer, pull_before = now.length - tie.reach, -tie.force
     if longer > 0 and tie.rate > 0 and (pull_before == 0 or tie.k * longer > tie.strength > pull_before):
         taut = min(longer / tie.rate, h) if pull_before == 0 else h
         most = min(tie.k * longer, tie.strength)

@@ -137,7 +137,7 @@ class ContactSearch:
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        fresh.finder, fresh.state = self.finder.apart(), self._no_contacts()
+        fresh.finder, fresh.state = self.finder.pending(), self._no_contacts()
         fresh.motion, fresh.joints = Motion.initial(self.limits.start), JointState.intact(*self.joints[:4])
         return fresh
 
@@ -151,10 +151,10 @@ class ContactSearch:
         blocks of a pair may. One that is not found is farther than the sum of both sizes."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
         found = self.finder.places_near(start, self.sizes, every, jointed)
-        apart = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
+        pending = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
         limits = TOWARDS_OTHERS * self.sizes
         for block in (found.face, found.other):
-            allowance = np.where(apart, TOWARDS_OTHERS * found.gap, VALID_APPROACH * self.sizes[block])
+            allowance = np.where(pending, TOWARDS_OTHERS * found.gap, VALID_APPROACH * self.sizes[block])
             np.minimum.at(limits, block, allowance)
         return np.asarray(np.maximum(limits, NEAR * self.sizes))
 
@@ -259,7 +259,7 @@ class ContactSearch:
             one, other = (self.names[int(block[place])] for block in (found.face, found.other))
             raise ArithmeticError(f"the contact of {one} and {other}")
         if left_joints.any():
-            for name in ("k", "c", "friction", "grip", "dragged", "push", "pressed", "depth", "rate"):
+            for name in ("k", "c", "friction", "shear_state", "shear_force", "push", "dashpot_force", "depth", "rate"):
                 joints[name][left_joints] = 0.0
             joints["margin"][left_joints] = np.inf  # no step takes such a line again
         self._keep(kept, found, number, new.slack, share)

@@ -262,17 +262,17 @@ def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks) -> None:
     replaces.
     """
     poses, old, new = blocks.poses, place_of(gone, both, blocks), place_of(line, both, blocks)
-    line.push, line.pressed = line.push + share * gone.push, line.pressed + share * gone.pressed
+    line.push, line.dashpot_force = line.push + share * gone.push, line.dashpot_force + share * gone.dashpot_force
     if gone.depth > line.depth or line.depth == 0:
         line.depth, line.rate = gone.depth, gone.rate
-    grip = scaled(share, read(gone.grip))
+    shear = scaled(share, read(gone.shear_state))
     if gone.face >= 0:
-        grip = turned(poses, old.face, grip)
-    grip = along_new(grip, old, new)
+        shear = turned(poses, old.face, shear)
+    shear = along_new(shear, old, new)
     if line.face >= 0:
-        grip = turned_back(poses, new.face, grip)
-    increase(line.grip, scaled(gone.k_s / line.k_s if line.k_s < math.inf else 1.0, grip))
-    increase(line.dragged, along_new(scaled(share, read(gone.dragged)), old, new))
+        shear = turned_back(poses, new.face, shear)
+    increase(line.shear_state, scaled(gone.k_s / line.k_s if line.k_s < math.inf else 1.0, shear))
+    increase(line.shear_force, along_new(scaled(share, read(gone.shear_force)), old, new))
 
 
 @inlined
@@ -335,4 +335,4 @@ def hand_over(new: Lines, found: ContactPlaces, gone: Lines, pairs: Pairs, block
             line = new.rows[i]
             if line.k_s < math.inf:
                 most = shear_limit(line, normal_force(line, -new.depth[i], 0.0)) / line.k_s
-                put(line.grip, shortened(read(line.grip), most))
+                put(line.shear_state, shortened(read(line.shear_state), most))

@@ -367,10 +367,10 @@ def sums(system: System, which: Integers, depth: Array) -> tuple[float, ...]:
             rate = dot(meet.normal, relative_velocity(system.bodies, line, system.supports, meet))
             power += normal_force(line, meet.gap, 0.0) * rate
         meet = where_friction_rubs(meet)
-        velocity, drag = relative_velocity(system.bodies, line, system.supports, meet), read(line.dragged)
-        moved += carried(line, system.supports, plus(scaled(line.push, meet.normal), as_vector(meet.normal, drag)))
-        rubbed -= dot(drag, along_face(meet.normal, velocity))
-        damped -= line.pressed * dot(meet.normal, velocity)
+        velocity, friction = relative_velocity(system.bodies, line, system.supports, meet), read(line.shear_force)
+        moved += carried(line, system.supports, plus(scaled(line.push, meet.normal), as_vector(meet.normal, friction)))
+        rubbed -= dot(friction, along_face(meet.normal, velocity))
+        damped -= line.dashpot_force * dot(meet.normal, velocity)
     along_faces = stored_by_laws(system.laws)[1]
     for p in range(len(system.lines)):
         along_faces += sheared(system.lines[p])

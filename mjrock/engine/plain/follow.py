@@ -184,9 +184,9 @@ class Sample(NamedTuple):
         elastic: energy in the springs of each pair and of all others [J], shape (p + 1,).
         work: since the release [J].
         deepest: the deepest contact since the sample before, if any.
-        loads, held: forces of the contacts on each joint and each fixed block, see `KeptForces`; empty where none are
-            kept.
-        pulled: force of each damper [N], shape (dampers,).
+        loads, contact_reactions: forces of the contacts on each joint and each fixed block, see `KeptForces`, or
+            empty.
+        damper_forces: force of each damper [N], shape (dampers,).
     """
 
     t: Array
@@ -196,8 +196,8 @@ class Sample(NamedTuple):
     work: Work
     deepest: list[Overlap]
     loads: Array
-    held: Array
-    pulled: Array
+    contact_reactions: Array
+    damper_forces: Array
 
 
 def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints: JointForces | None) -> list[Sample]:
@@ -233,7 +233,7 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
             deepest = engine.deepest(contacts, t, deepest)
             if pose is not None:
                 energies = 0.5 * contacts.k * np.minimum(contacts.gap, 0.0) ** 2
-                loads, held = (np.empty(0), np.empty(0)) if joints is None else joints.loads(engine, contacts)
+                loads, reactions = (np.empty(0), np.empty(0)) if joints is None else joints.loads(engine, contacts)
                 sample = Sample(
                     t=np.array(t),
                     pose=pose,
@@ -242,8 +242,8 @@ def follow(engine: PlainEngine, course: Course, steps: int, stride: int, joints:
                     work=total.plus(work, 0.5),
                     deepest=[] if deepest is None else [deepest],
                     loads=loads,
-                    held=held,
-                    pulled=engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers],
+                    contact_reactions=reactions,
+                    damper_forces=engine.scene.links.damped.law["c"] * data.ten_velocity[engine.dampers],
                 )
                 samples.append(sample)
                 deepest = None
@@ -292,7 +292,7 @@ class JointForces:
         freedom, model, data = engine.scene.freedom, engine.model, engine.data
         axes, local = list(freedom.axes), np.zeros(6)
         loads = np.zeros((len(self.above), freedom.nv))
-        held = np.zeros((len(self.fixed), freedom.translations))
+        reactions = np.zeros((len(self.fixed), freedom.translations))
         for number, pair, (first, second) in zip(contacts.number, contacts.pair, contacts.pieces, strict=True):
             mujoco.mj_contactForce(model, data, number, local)
             contact = data.contact[number]
@@ -300,8 +300,8 @@ class JointForces:
             moment = np.cross(contact.pos, force)
             for piece, sense in ((engine.pieces[first], -1.0), (engine.pieces[second], 1.0)):
                 if piece.block in self.fixed:
-                    held[self.fixed[piece.block]] -= sense * force[axes]
+                    reactions[self.fixed[piece.block]] -= sense * force[axes]
                 elif self.joint[pair] < len(self.above) and piece.body == self.above[self.joint[pair]]:
                     about = moment if freedom != PLANE else moment[1:2]
                     loads[self.joint[pair]] += sense * np.concatenate([force[axes], about])
-        return loads, held
+        return loads, reactions

@@ -69,16 +69,16 @@ class Pairs:
         weight = of_piece[jointed].sum(axis=1)
         laws = np.stack([weight, k / POINTS, c / POINTS, rubbing / k])
         others = np.array([1.0, *np.median([weight * laws[1], weight * laws[2], laws[3]], axis=1)])
-        apart, properties = _pairs_without_joint(scene, pieces, jointed)
-        weight_apart = of_piece[apart].sum(axis=1)
-        k_apart = np.divide(others[1], weight_apart)
-        laws_apart = [weight_apart, k_apart, properties[:, 1] * k_apart, properties[:, 0]]
-        every = np.concatenate([jointed, apart])
-        order = np.lexsort(every.T[::-1])
-        joint = np.append(contacts.joint[line], np.full(len(apart), len(contacts.joints)))[order]
-        weight, k, c, friction = np.column_stack([laws, laws_apart])[:, order]
+        unjointed, properties = _pairs_without_joint(scene, pieces, jointed)
+        unjointed_weight = of_piece[unjointed].sum(axis=1)
+        unjointed_k = np.divide(others[1], unjointed_weight)
+        unjointed_laws = [unjointed_weight, unjointed_k, properties[:, 1] * unjointed_k, properties[:, 0]]
+        pairs = np.concatenate([jointed, unjointed])
+        order = np.lexsort(pairs.T[::-1])
+        joint = np.append(contacts.joint[line], np.full(len(unjointed), len(contacts.joints)))[order]
+        weight, k, c, friction = np.column_stack([laws, unjointed_laws])[:, order]
         return cls(
-            pieces=every[order],
+            pieces=pairs[order],
             of_joint=np.append(joint, len(contacts.joints)),
             weight=np.append(weight, others[0]),
             k=np.append(k, others[1]),
@@ -95,9 +95,9 @@ class Pairs:
         for i in range(count):
             dashpot, inertia[i] = row(self.k[i], self.c[i], self.weight[i], step)
             *solref[i], impedance[i] = pair_values(self.k[i], dashpot, inertia[i], self.weight[i])
-        grips = self.friction > 0
-        held = self.friction_inertia / self.weight[grips]
-        ratio = float((held / inertia[grips]).min()) if grips.any() else 1.0
+        rough = self.friction > 0
+        of_friction = self.friction_inertia / self.weight[rough]
+        ratio = float((of_friction / inertia[rough]).min()) if rough.any() else 1.0
         return PairRows(solref, impedance, -impedance / timestep, max(1.0, ratio))
 
 
@@ -108,14 +108,14 @@ class PairRows:
 
     solref: Array
     impedance: Array
-    grip: Array
+    friction_rate: Array
     impratio: float
 
 
 def _pairs_without_joint(scene: Scene, pieces: list[Piece], jointed: Integers) -> tuple[Integers, Array]:
     """Pieces of two blocks without a joint whose law the masonry gives, shape (n, 2), and the friction and dashpot over
     spring of each two, shape (n, 2)."""
-    apart, properties = list[tuple[int, int]](), list[PairProperties]()
+    unjointed, properties = list[tuple[int, int]](), list[PairProperties]()
     if scene.springs is not None and scene.springs.pairs is not None:
         names = [solid.name for solid in scene.rest_geometry.solids]
         neighbours = {frozenset((pieces[a].block, pieces[b].block)) for a, b in jointed.tolist()}
@@ -123,11 +123,11 @@ def _pairs_without_joint(scene: Scene, pieces: list[Piece], jointed: Integers) -
         for i, j in combinations(range(len(names)), 2):
             first, second = by_block[names[i]], by_block[names[j]]
             fixed = all(pieces[k].body == GROUND for k in (*first[:1], *second[:1]))
-            if fixed or {names[i], names[j]} in neighbours or (own := scene.springs.of_pair(i, j)) is None:
+            if fixed or {names[i], names[j]} in neighbours or (law := scene.springs.of_pair(i, j)) is None:
                 continue
             pairs = [(min(pair), max(pair)) for pair in product(first, second)]
-            apart, properties = [*apart, *pairs], [*properties, *[own] * len(pairs)]
-    return np.reshape(apart, (-1, 2)).astype(np.int64), np.reshape(properties, (-1, 2)).astype(float)
+            unjointed, properties = [*unjointed, *pairs], [*properties, *[law] * len(pairs)]
+    return np.reshape(unjointed, (-1, 2)).astype(np.int64), np.reshape(properties, (-1, 2)).astype(float)
 
 
 def _carriers(scene: Scene, pieces: list[Piece]) -> tuple[Integers, Integers]:
@@ -145,7 +145,7 @@ def _nearest(pieces: list[Piece], body: Integers, points: Array, normals: Array)
     chosen, points, normals = np.zeros(len(points), dtype=np.int64), in_space(points), in_space(normals)
     carrier = np.array([piece.body if piece.meets else NO_BODY for piece in pieces])
     for j in np.unique(body):
-        own, here = np.flatnonzero(carrier == j), body == j
-        far = np.array([pieces[i].beside(points[here], normals[here]) for i in own])
-        chosen[here] = own[far.argmin(axis=0)]
+        candidates, of_body = np.flatnonzero(carrier == j), body == j
+        distance = np.array([pieces[i].distance(points[of_body], normals[of_body]) for i in candidates])
+        chosen[of_body] = candidates[distance.argmin(axis=0)]
     return chosen

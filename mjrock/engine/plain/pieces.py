@@ -80,7 +80,7 @@ class Piece:
         """Whether it is neither a box nor a plane, which MuJoCo has as shapes of their own."""
         return not (self.is_ground or self.box)
 
-    def beside(self, points: Array, normals: Array) -> Array:
+    def distance(self, points: Array, normals: Array) -> Array:
         """How far points are from its faces, with the normals of these as theirs [m], shape (n,).
 
         A normal that differs from that of the face adds the size of the solid times one less the cosine between both.
@@ -94,14 +94,14 @@ class Piece:
 def pieces_of(scene: Scene) -> list[Piece]:
     """The pieces of a scene: those of its bodies in their order, and then the fixed ones."""
     solids = sorted(scene.rest_geometry.solids, key=lambda solid: solid.fixed)
-    return [piece for solid in solids for piece in _of_solid(solid, scene)]
+    return [piece for solid in solids for piece in _pieces_of_solid(solid, scene)]
 
 
-def _of_solid(solid: Solid, scene: Scene) -> Iterator[Piece]:
+def _pieces_of_solid(solid: Solid, scene: Scene) -> Iterator[Piece]:
     """The convex parts of a solid."""
     parts, is_wall = solid.drawn if solid.fixed else solid.parts, solid.block is None or not solid.sides
     if is_wall and not solid.fixed:
-        yield from _of_wall(solid, scene)
+        yield from _pieces_of_wall(solid, scene)
         return
     if is_stepped_stop(solid):
         corners = solid.corners
@@ -128,7 +128,7 @@ def _filled(solid: Solid, corners: Array) -> Iterator[Piece]:
             yield Piece(f"{solid.name} part {i}", solid.name, solid.body, part, meets=False)
 
 
-def _of_wall(solid: Solid, scene: Scene) -> Iterator[Piece]:
+def _pieces_of_wall(solid: Solid, scene: Scene) -> Iterator[Piece]:
     """A wall meets its base and its side as one convex solid."""
     corners = solid.corners
     rests = scene.contacts.at[scene.contacts.normal[:, 1] == 1, 0]

@@ -18,7 +18,7 @@ from ...result.forces import Forces, KeptForces, forces_of
 from ...result.ledger import Ledger, StepError, warn_if_open
 from ...result.motion import SampledMotion, whole_steps
 from ...result.problem import Problem, require_in_text
-from ...result.reading import BesidePoses
+from ...result.reading import ContactHistory
 from ...result.response import End, Response, State
 from ...result.ties import Plastic, motion_of_ties, plastic_of, ties_message, warn_of_ties
 from ...scene.course import Course
@@ -172,17 +172,17 @@ class PlainRun:
 
     def plastic(self) -> dict[str, Plastic]:
         """How far each tie has yielded."""
-        taken, links = self.stored[1][-1], self.model.scene.links.sprung
-        never = np.full(len(taken), np.inf)
-        return plastic_of(self.model.scene, taken / links.law["strength"], taken, never, np.zeros(len(taken)))
+        energy, strength = self.stored[1][-1], self.model.scene.links.sprung.law["strength"]
+        return plastic_of(self.model.scene, elongation=energy / strength, energy=energy)
 
     def forces(self, plastic: dict[str, Plastic]) -> Forces:
         """The forces of joints, links and fixed blocks."""
         case, links, at = self.model.problem.case, self.model.scene.links, self.at
         ties = motion_of_ties(BodyMotion(case, at.t, at.pose), plastic)
-        pulled = {name: ties[name].force for name in links.sprung.names}
-        pulled |= dict(zip(links.damped.names, at.pulled.T, strict=True))
-        return forces_of(case, case.rest_geometry.frames, KeptForces(at.t, at.pose, at.loads, at.held, pulled))
+        of_links = {name: ties[name].force for name in links.sprung.names}
+        of_links |= dict(zip(links.damped.names, at.damper_forces.T, strict=True))
+        kept = KeptForces(t=at.t, pose=at.pose, loads=at.loads, contact_reactions=at.contact_reactions, links=of_links)
+        return forces_of(case, case.rest_geometry.frames, kept)
 
 
 def simulate_plain(problem: Problem, options: Options, state: State | None) -> Response:
@@ -248,8 +248,8 @@ def response_of_plain(run: PlainRun, settings: dict[str, float], options: Option
     model, at, motion = run.model, run.at, SampledMotion(run.at.pose, run.at.velocity, run.energy)
     encounters = model.pairs.of_joint == len(model.scene.contacts.joints)
     elsewhere = bool((at.elastic[:, encounters] > 0).any())
-    beside = BesidePoses(np.zeros(len(model.scene.contacts.k)), elsewhere, {})
-    reading = model.problem.read(model.scene, at.t, motion, released=model.course.released, beside=beside)
+    history = ContactHistory(np.zeros(len(model.scene.contacts.k)), elsewhere, {})
+    reading = model.problem.read(model.scene, at.t, motion, released=model.course.released, history=history)
     plastic, account = run.plastic(), run.ledger()
     overlap, message = run.overlap
     if overlap > NOTABLE_OVERLAP:

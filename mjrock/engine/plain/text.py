@@ -151,7 +151,7 @@ def _laws(pairs: Pairs, rows: PairRows) -> list[dict[str, object]]:
             law |= {
                 "condim": "3",
                 "friction": (mu, mu, 0, 0, 0),
-                "solreffriction": f"-1e-30 {number_text(rows.grip[i])}",
+                "solreffriction": f"-1e-30 {number_text(rows.friction_rate[i])}",
             }
         laws.append({name: text_of(value) for name, value in law.items()})
     return laws

@@ -336,8 +336,8 @@ class Contacts:
                 warn_of(difference)
         else:
             xi_base, xi_side = _predicted(law, wall, e, k_base)
-        if unlikely := e.doubt(wall, None):
-            warn_of(unlikely, Implausible)
+        if unlike_wall := e.difference_from(wall, None):
+            warn_of(unlike_wall, Implausible)
         if k_side is not None and (rebound := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
             warn_of(
                 f"the base is too soft for the rebound that e requires from {amplitude:g} alpha: it would turn the "
@@ -355,7 +355,7 @@ class Contacts:
             friction=friction,
             side_friction=side_friction,
             law=name,
-            stop_top=e.made_for and 2 * wall.h * e.made_for[1],
+            stop_top=e.stop_top(wall),
         )
 
     def faces(self, *, side_stop: bool) -> list[Interface]:

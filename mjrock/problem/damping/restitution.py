@@ -9,6 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
+from ...deprecation import deprecated
 from ...quantities import (
     ON_ITS_FACE,
     Array,
@@ -66,9 +67,13 @@ class Restitution:
         """e_1s = e_2s e_side e_2s: base, side, base in quick succession (Eq. 4) [-]."""
         return self.base**2 * self.side
 
-    def doubt(self, wall: Block, stop_top: float | None) -> str | None:
-        """How a wall and its side stop up to `stop_top` [m] differ from those that the values were made for, in words;
-        None if they do not."""
+    def stop_top(self, wall: Block) -> float | None:
+        """Height on a wall of the side stop that the values were made for [m]; None if unknown."""
+        return None if self.made_for is None else 2 * wall.h * self.made_for[1]
+
+    def difference_from(self, wall: Block, stop_top: float | None) -> str | None:
+        """How a wall and its side stop up to `stop_top` [m] differ from those that the values were made for, as a
+        sentence; None if they do not."""
         if self.made_for is None:
             return None
         alpha, share = self.made_for
@@ -85,6 +90,11 @@ class Restitution:
                 f"{top:.4g} m; take Restitution.from_geometry(wall, stop_top={top:.4g})"
             )
         return None
+
+    @deprecated("difference_from", since="1.0", removal="2.0")
+    def doubt(self, wall: Block, stop_top: float | None) -> str | None:
+        """The same as `difference_from`."""
+        return self.difference_from(wall, stop_top)
 
     def scattered(self, sd: float, seed: int) -> ScatteredRestitution:
         """This restitution as the mean of values that differ from impact to impact.
@@ -216,9 +226,14 @@ class ScatteredRestitution:
         """The mean of the sequence base, side, base [-]."""
         return self.mean.lumped
 
-    def doubt(self, wall: Block, stop_top: float | None) -> str | None:
+    def difference_from(self, wall: Block, stop_top: float | None) -> str | None:
         """That of the mean."""
-        return self.mean.doubt(wall, stop_top)
+        return self.mean.difference_from(wall, stop_top)
+
+    @deprecated("difference_from", since="1.0", removal="2.0")
+    def doubt(self, wall: Block, stop_top: float | None) -> str | None:
+        """The same as `difference_from`."""
+        return self.difference_from(wall, stop_top)
 
     def drawn(self) -> Restitution:
         """One draw of each coefficient: the restitution of a run on contacts."""

@@ -776,7 +776,8 @@ class GroundMotion:
         Raises:
             OSError: if the file cannot be read.
             ValueError: for an unknown unit, times that do not increase evenly (within 1 % of their step, or what their
-                decimals round), what is not a finite number, and for doubts, with the line and both readings.
+                decimals round), what is not a finite number, and where the text can be read in two ways,
+                with the line and both readings.
         """
         traces = table_traces(path, TableOptions(unit, time_unit, dt, columns, skip, sheet))
         if len(traces) > 1:
@@ -808,15 +809,15 @@ class GroundMotion:
 
 
 def motion_of(trace: Trace, path: str | PathLike[str]) -> GroundMotion:
-    """The motion of a trace, named after its header or its file, with what makes one doubt its unit or baseline."""
+    """The motion of a trace, named after its header or its file, and warnings about its unit and its baseline."""
     header = trace.header
     named = [header[field] for field in NAME_FIELDS if header.get(field)] if header.get("STATION_CODE") else []
     named += [] if named else [Path(path).stem, *(header.values() if list(header) == ["STREAM"] else ())]
     motion = GroundMotion._of_file(trace.accel, trace.dt, name := " ".join(named), header)
     peak, final, fastest = motion.peak, motion.residual_velocity, motion.peak_velocity
     if peak < SMALL_PEAK:
-        doubt = "" if "UNITS" in header else "; is its unit right?"
-        warn_of(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only{doubt}")
+        remark = "" if "UNITS" in header else "; is its unit right?"
+        warn_of(f"{name} peaks at {peak:g} m/s2 = {peak / GRAVITY:.3g} g only{remark}")
     if abs(final) > DRIFT_WARNED_OF * fastest:
         warn_of(
             f"{name} drifts: its residual velocity is {final:.3g} m/s, its peak velocity {fastest:.3g} m/s; it needs a "

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from ...quantities import Array, Within, keep, keep_declared, require_array, require_reals, require_whole, shown
+from ...quantities import Within, keep, keep_declared, require_array, require_reals, require_whole, shown
 from ..wall.effect import BLOCKS, FARTHEST_POINT, Effect, PointOf
 from .histories import Times, history_of
 
@@ -46,8 +46,8 @@ class Actuator(Effect):
         block: the block that it drives, by its name or number, or None for all free blocks.
         at: the point of the block that it drives, as drawn, x, z and in space x, y, z [m], -10000 to 10000; None for
             all free blocks.
-        direction: 1 or -1 along x, or a vector of any length, (x, z) and in space (x, y, z). All free blocks of masonry
-            in space take a vector.
+        direction: 1 or -1 along x, or a vector of any length, (x, z) and in space (x, y, z), kept as a unit
+            vector. All free blocks of masonry in space take a vector.
         displacement: (t, d) in s and m, from (0, 0) on, linear in between and constant after the last, within 10 m.
             None rests, for `push`, which finds its own.
         stiffness: of its spring [N/m], 1 to 1e12.
@@ -104,11 +104,6 @@ class Actuator(Effect):
     def height(self) -> float:  # type: ignore[override]
         """Of its point [m], not a number for one that drives all blocks."""
         return math.nan if self.at is None else float(self.at[-1])
-
-    @property
-    def way(self) -> Array:
-        """Unit vector of its direction, shape (2,), in space (3,)."""
-        return np.array(self.direction)
 
     @property
     def guide(self) -> Guide:

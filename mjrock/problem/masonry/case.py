@@ -29,7 +29,7 @@ from ..ground.motion import GroundMotion
 from ..wall.case import Case
 from ..wall.effect import Anchored, Effect, require_only
 from ..wall.effects import EFFECT_KINDS, Carrying, Load
-from ..wall.plausibility import LARGEST_PEAK_IN_G, NEGLIGIBLE_SHARE, HeldSize, Whole, of_effects, of_motion
+from ..wall.plausibility import LARGEST_PEAK_IN_G, NEGLIGIBLE_SHARE, HeldSize, Subject, of_effects, of_motion
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
@@ -61,7 +61,7 @@ def doubts(case: MasonryCase) -> list[str]:
     masonry = case.masonry
     mass = sum(masonry.blocks[i].mass for i in masonry.free)
     messages = of_motion(case.motion, case.duration, "masonry", sustained_acceleration(case))
-    messages += of_effects(case.effects, Whole("masonry", "its block", mass), lambda link: _size_along(masonry, link))
+    messages += of_effects(case.effects, Subject("masonry", "its block", mass), lambda link: _size_along(masonry, link))
     return messages + [odd for name, jack in case.actuators.items() if (odd := _of_jack(name, jack, masonry, mass))]
 
 
@@ -95,7 +95,7 @@ def _extent(masonry: Masonry, direction: Array) -> float:
 
 def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
     """A doubt about an actuator, empty where there is none."""
-    largest, extent = max(map(abs, jack.displacement[1])), _extent(masonry, jack.way)
+    largest, extent = max(map(abs, jack.displacement[1])), _extent(masonry, np.array(jack.direction))
     if largest > extent and jack.stiffness * largest > SPRING_FORCE_OVER_WEIGHT * mass * GRAVITY:
         return f"{name}: displacement reaches {largest:g} m, and the masonry is {extent:.3g} m long there: is it in mm?"
     if 0 < jack.stiffness * largest < NEGLIGIBLE_SHARE * mass * GRAVITY:

@@ -224,13 +224,13 @@ def lowest_frequency(
     opening = about_axes(rates(blocks, lines, lines.normal))
     sliding = about_axes(mean_slip_rates(blocks, lines, len(friction)))
     sticking = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
-    grip, stiffness = sliding[np.tile(sticking, sliding.shape[0] // len(sticking))], sprung(opening, lines.k)
-    square = lowest_square(stiffness, masses, grip, UNRESISTED)
+    sticking_rates, stiffness = sliding[np.tile(sticking, sliding.shape[0] // len(sticking))], sprung(opening, lines.k)
+    square = lowest_square(stiffness, masses, sticking_rates, UNRESISTED)
     if square == 0:
         springs = np.where(np.isfinite(along) & (friction > 0)[lines.joint], along, 0.0)
         for tangent in lines.tangents:
             stiffness = stiffness + sprung(about_axes(rates(blocks, lines, tangent)), springs)
-        square = lowest_square(stiffness, masses, grip[:0], UNRESISTED)
+        square = lowest_square(stiffness, masses, sticking_rates[:0], UNRESISTED)
     return math.sqrt(square)
 
 

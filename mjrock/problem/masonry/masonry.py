@@ -202,8 +202,8 @@ class Masonry(Constructors, NotebookPicture):
     ) -> None:
         keep(self, blocks=blocks_of_one_kind(blocks), law=law, tolerance=tolerance, gap=gap)
         keep(self, pairs=required_pairs(pairs))
-        given = {"k_n": k_n, "friction": friction, "xi": xi, "frequency": frequency, "points": points, "k_s": k_s}
-        keep(self, **properties_of(joints, given | {"bond": bond}))
+        properties = {"k_n": k_n, "friction": friction, "xi": xi, "frequency": frequency, "points": points, "k_s": k_s}
+        keep(self, **properties_of(joints, properties | {"bond": bond}))
         if not self.joints:
             side = "a face" if self.in_space else "an edge"
             raise ValueError(
@@ -214,7 +214,7 @@ class Masonry(Constructors, NotebookPicture):
             keep(self, law=required_law(law))
         if len(counts := set(self.table.points.tolist())) == 1:
             keep(self, points=counts.pop())
-        for odd in self._doubts():
+        for odd in self._remarks():
             warn_of(odd, Implausible)
 
     def __repr__(self) -> str:
@@ -222,8 +222,8 @@ class Masonry(Constructors, NotebookPicture):
         size = " x ".join(f"{extent:.4g}" for extent in np.ptp(corners, axis=0))
         omitted = {"k_s": np.isinf(self.joint_shear).all(), "xi": self.law is not None}
         names = (name for name in ("k_n", "k_s", "friction", "xi", "points") if not omitted.get(name))
-        given = ((name, getattr(self, name)) for name in names)
-        parts = [f"{name} of the joint" if callable(value) else f"{name} = {value:g}" for name, value in given]
+        properties = ((name, getattr(self, name)) for name in names)
+        parts = [f"{name} of the joint" if callable(value) else f"{name} = {value:g}" for name, value in properties]
         if self.law is not None:
             parts.insert(-1, f"law {getattr(self.law, 'name', getattr(self.law, '__name__', 'given'))}")
         bonded = ", mortar" if any(isinstance(bond, Bond) for bond in self.bonds) else ""
@@ -317,8 +317,8 @@ class Masonry(Constructors, NotebookPicture):
     @cached_property
     def table(self) -> JointTable:
         """The properties of the joints, a row each, with the damping of the law where there is one."""
-        given = {name: getattr(self, name) for name in PROPERTIES}
-        table = JointTable.from_properties(self.joints, given)
+        properties = {name: getattr(self, name) for name in PROPERTIES}
+        table = JointTable.from_properties(self.joints, properties)
         if self.law is None:
             return table
         if (known := table.frequency[~np.isnan(table.frequency)]).size:
@@ -394,8 +394,8 @@ class Masonry(Constructors, NotebookPicture):
         xi, frequency = self.table.xi, self.table.frequency
         if not xi.any():
             return np.zeros(len(self.joints))
-        own = np.isnan(frequency)
-        return np.asarray(2 * xi / (np.where(own, self._lowest_frequency, frequency) if own.any() else frequency))
+        lowest = np.isnan(frequency)
+        return np.asarray(2 * xi / (np.where(lowest, self._lowest_frequency, frequency) if lowest.any() else frequency))
 
     @cached_property
     def _lowest_frequency(self) -> float:
@@ -407,18 +407,18 @@ class Masonry(Constructors, NotebookPicture):
         """What is odd about the sizes of its free blocks, in words, empty where nothing is."""
         return odd_sizes({self.names[i]: 2 * self.blocks[i].size for i in self.free})
 
-    def _doubts(self) -> list[str]:
+    def _remarks(self) -> list[str]:
         """What is odd about it, in words, empty where nothing is. Its table is made, and so checked, for that."""
         xi, frequency = self.table.xi, self.table.frequency
-        own, frequency_doubt = np.isnan(frequency), ""
-        if self.law is None and not own.all():
-            i = int(np.where(own, -1.0, xi / frequency).argmax())
+        at_lowest, odd = np.isnan(frequency), ""
+        if self.law is None and not at_lowest.all():
+            i = int(np.where(at_lowest, -1.0, xi / frequency).argmax())
             lowest = self._lowest_frequency if xi[i] else 0.0
-            frequency_doubt = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
+            odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
         sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
-        touches_doubt = f"without a joint {touches_text(touches, self.names)}" if touches else ""
-        return [doubt for doubt in (frequency_doubt, odd_damping(xi[own]), sizes, faces, touches_doubt) if doubt]
+        unjoined = f"without a joint {touches_text(touches, self.names)}" if touches else ""
+        return [text for text in (odd, odd_damping(xi[at_lowest]), sizes, faces, unjoined) if text]
 
     @classmethod
     def stack(
@@ -448,19 +448,19 @@ class Masonry(Constructors, NotebookPicture):
             ValueError: for a value outside its range, or as `Masonry` does.
         """
         polygons = stack(blocks, ground, side_stop)
-        given = one_by_one({**options, "k_n": k_n})
+        properties = one_by_one({**options, "k_n": k_n})
         if not side_stop:
             if k_side is not None or side_friction:
                 raise ValueError("k_side and side_friction need a side stop; give side_stop=True")
-            return cls(polygons, **given)
-        frequency = given["frequency"]
-        if given.get("law") is None and (frequency is None or callable(frequency)):
-            bare = cls(polygons[:-1], **given)
-            lowest = lowest_frequency(bare.blocks, bare.lines, bare.joint_friction)
-            given["frequency"] = OrElse(frequency, lowest) if callable(frequency) else lowest
-        given["k_n"] = ByKind(given["k_n"], k_side or given["k_n"])
-        given["friction"] = ByKind(given["friction"], side_friction)
-        return cls(polygons, **given)
+            return cls(polygons, **properties)
+        frequency = properties["frequency"]
+        if properties.get("law") is None and (frequency is None or callable(frequency)):
+            without_side = cls(polygons[:-1], **properties)
+            lowest = lowest_frequency(without_side.blocks, without_side.lines, without_side.joint_friction)
+            properties["frequency"] = OrElse(frequency, lowest) if callable(frequency) else lowest
+        properties["k_n"] = ByKind(properties["k_n"], k_side or properties["k_n"])
+        properties["friction"] = ByKind(properties["friction"], side_friction)
+        return cls(polygons, **properties)
 
     @classmethod
     def from_dxf(

@@ -130,7 +130,7 @@ class LinkLaw(NamedTuple):
         broken = self.strength < math.inf and beyond > self.strength / self.k + self.ultimate
         return 0.0 if broken or beyond < -SHORTER else self.strength
 
-    def drawn(self, elongation: Array, before: float = 0.0) -> Array:
+    def plastic_elongation(self, elongation: Array, before: float = 0.0) -> Array:
         """How far the slider has moved along elongations beyond the slack [m], shape (n,), if nothing breaks, from
         where it was before [m]."""
         stretch, squeeze = self.strength / self.k, self.push / self.k

@@ -137,10 +137,10 @@ def _of_effects(case: Any) -> list[str]:
         pull = TiePull.from_tie(link, case.block)._replace(reach=link.span)
         return HeldSize(2 * b, float(pulled(pull, opening, 1.0)[0]))
 
-    return of_effects(case.effects, Whole("wall", "the wall", case.block.mass, LEAST_OF_WALL), size_of)
+    return of_effects(case.effects, Subject("wall", "the wall", case.block.mass, LEAST_OF_WALL), size_of)
 
 
-class Whole(NamedTuple):
+class Subject(NamedTuple):
     """What effects act on.
 
     Args:
@@ -167,23 +167,23 @@ HeldBy = Callable[[Anchored], HeldSize]
 """The size of what a link holds."""
 
 
-def of_effects(effects: Sequence[Effect], whole: Whole, held: HeldBy) -> list[str]:
+def of_effects(effects: Sequence[Effect], subject: Subject, size_of: HeldBy) -> list[str]:
     """What is odd about effects."""
     messages = []
-    weight = whole.mass * GRAVITY
+    weight = subject.mass * GRAVITY
     for i, effect in enumerate(effects):
         name = f"effects[{i}], {type(effect).__name__}"
         if isinstance(effect, Thrust | Load):
-            if 0 < abs(effect.force) < whole.least * weight:
-                messages.append(_against_weight(name, "force", effect.force, whole, "kN"))
+            if 0 < abs(effect.force) < subject.least * weight:
+                messages.append(_against_weight(name, "force", effect.force, subject, "kN"))
             elif abs(effect.force) > EXCESSIVE * weight:
-                messages.append(_against_weight(name, "force", effect.force, whole, "N"))
-        elif isinstance(effect, AddedMass) and 0 < effect.mass < whole.least * whole.mass:
+                messages.append(_against_weight(name, "force", effect.force, subject, "N"))
+        elif isinstance(effect, AddedMass) and 0 < effect.mass < subject.least * subject.mass:
             messages.append(
-                f"{name}: mass = {effect.mass:g} kg, that of the {whole.label} {whole.mass:.3g} kg: is it in t?"
+                f"{name}: mass = {effect.mass:g} kg, that of the {subject.label} {subject.mass:.3g} kg: is it in t?"
             )
         elif isinstance(effect, Anchored):
-            messages += filter(None, (of(name, effect, whole, held) for of in (_of_dashpot, _of_spring)))
+            messages += filter(None, (of(name, effect, subject, size_of) for of in (_of_dashpot, _of_spring)))
     return messages
 
 
@@ -206,35 +206,35 @@ def _of_free_part(case: Any) -> list[str]:
     ]
 
 
-def _of_spring(name: str, link: Anchored, whole: Whole, held: HeldBy) -> str:
+def _of_spring(name: str, link: Anchored, subject: Subject, size_of: HeldBy) -> str:
     """At most one doubt about the spring of a link and its limits, empty where there is none."""
-    law, limit, weight = link.law, link.limit, whole.mass * GRAVITY
+    law, limit, weight = link.law, link.limit, subject.mass * GRAVITY
     if not law.k > 0:
         return ""
-    if law.strength < whole.least * weight:
-        return _against_weight(name, limit, law.strength, whole, "kN")
+    if law.strength < subject.least * weight:
+        return _against_weight(name, limit, law.strength, subject, "kN")
     if law.k > STIFFEST:
         return f"{name}: stiffness = {law.k:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"
-    thickness, opens = held(link)
+    thickness, opens = size_of(link)
     if math.isfinite(law.strength) and law.strength / law.k > thickness:
         return (
-            f"{name} yields at an elongation of {law.strength / law.k:.3g} m, and {whole.part} is {thickness:g} m "
+            f"{name} yields at an elongation of {law.strength / law.k:.3g} m, and {subject.part} is {thickness:g} m "
             "thick: is its stiffness in N/m?"
         )
     if math.isfinite(law.strength) and law.strength > EXCESSIVE * weight:
-        return _against_weight(name, limit, law.strength, whole, "N, and no stress in Pa")
+        return _against_weight(name, limit, law.strength, subject, "N, and no stress in Pa")
     for argument, length in (("slack", law.reach - link.span), ("ultimate", law.ultimate)):
         if math.inf > length > opens > 0:
             return (
-                f"{name}: {argument} = {length:g} m, and where it is held the {whole.label} opens by {opens:.3g} m "
+                f"{name}: {argument} = {length:g} m, and where it is held the {subject.label} opens by {opens:.3g} m "
                 f"until it overturns: is the {argument} in m?"
             )
     return ""
 
 
-def _of_dashpot(name: str, link: Anchored, whole: Whole, held: HeldBy) -> str:
+def _of_dashpot(name: str, link: Anchored, subject: Subject, size_of: HeldBy) -> str:
     """A doubt about the dashpot of a link, by its force at the speed sqrt(g t) of a wall of thickness t that falls."""
-    speed, weight = math.sqrt(GRAVITY * held(link).thickness), whole.mass * GRAVITY
+    speed, weight = math.sqrt(GRAVITY * size_of(link).thickness), subject.mass * GRAVITY
     force = resistance(link.law, speed)
     if not force > 0 or NEGLIGIBLE_SHARE * weight <= force <= EXCESSIVE * weight:
         return ""
@@ -242,10 +242,11 @@ def _of_dashpot(name: str, link: Anchored, whole: Whole, held: HeldBy) -> str:
     if not link.law.c > 0:
         dashpot, unit = "its dashpot", "N and m/s"
     return (
-        f"{name}: {dashpot} bears {force:.3g} N at {speed:.2g} m/s, at which the {whole.label} falls, "
+        f"{name}: {dashpot} bears {force:.3g} N at {speed:.2g} m/s, at which the {subject.label} falls, "
         f"and it weighs {weight:.3g} N: is it in {unit}?"
     )
 
 
-def _against_weight(name: str, field: str, value: float, whole: Whole, unit: str) -> str:
-    return f"{name}: {field} = {value:g} N, and the {whole.label} weighs {whole.mass * GRAVITY:.3g} N: is it in {unit}?"
+def _against_weight(name: str, field: str, value: float, subject: Subject, unit: str) -> str:
+    weight = f"{subject.mass * GRAVITY:.3g} N"
+    return f"{name}: {field} = {value:g} N, and the {subject.label} weighs {weight}: is it in {unit}?"

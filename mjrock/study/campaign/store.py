@@ -290,8 +290,8 @@ class Store:
         unknown = where.keys() - set(self.columns)
         if unknown:
             raise ValueError(f"there is no column {', '.join(sorted(unknown))}; there are {', '.join(self.columns)}")
-        wanted = {name: table_value(value) for name, value in where.items()}
-        return [row for row in self._verified() if all(row[name] == value for name, value in wanted.items())]
+        requested = {name: table_value(value) for name, value in where.items()}
+        return [row for row in self._verified() if all(row[name] == value for name, value in requested.items())]
 
     def csv(self, *, timings: bool = True) -> str:
         """The rows as CSV text; without timings it is the same however the campaign went, killed and resumed or not.

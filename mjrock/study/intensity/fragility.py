@@ -262,8 +262,8 @@ def fit_fragility(
     of_groups = np.zeros((names, len(runs)))
     np.add.at(of_groups, (group, number), 1.0)
     draws = drawn(names, resamples, seed)
-    count, at_once = len(draws), max(1, MOST_VALUES // len(runs))
-    weights = (draws[i : i + at_once] @ of_groups for i in range(0, count, at_once))
+    count, batch = len(draws), max(1, MOST_VALUES // len(runs))
+    weights = (draws[i : i + batch] @ of_groups for i in range(0, count, batch))
     fits = [resampled(np.log(runs.real), runs.imag > 0, each) for each in weights]
     curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(each for _, each in fits)
     curves.setflags(write=False)

@@ -69,19 +69,19 @@ class Thresholds(NotebookPicture):
     @property
     def lowest(self) -> Array:
         """The lowest scale at which each record makes it fall, NaN where none does, shape (records,)."""
-        return np.array([own[0].falls_from if own else math.nan for own in self.islands])
+        return np.array([islands[0].falls_from if islands else math.nan for islands in self.islands])
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """What each record does, in words."""
-        return tuple(self._sentence(own) for own in self.islands)
+        return tuple(self._sentence(islands) for islands in self.islands)
 
-    def _sentence(self, own: Sequence[Island]) -> str:
-        if not own:
+    def _sentence(self, islands: Sequence[Island]) -> str:
+        if not islands:
             return f"stands at all {len(self.scales)} scales that were tried, up to {self.scales[-1]:.4g}"
-        lower = int((self.scales < own[0].falls_from).sum())
+        lower = int((self.scales < islands[0].falls_from).sum())
         below = f"stands at all {lower} lower scales that were tried" if lower else "no lower scale was tried"
-        return f"falls {' and '.join(map(str, own))}; {below}"
+        return f"falls {' and '.join(map(str, islands))}; {below}"
 
     def table(self) -> str:
         """A line for each range: its edges, and in which range nudged motions have them, as text."""
@@ -89,12 +89,12 @@ class Thresholds(NotebookPicture):
 
     def _rows(self) -> list[tuple[str, ...]]:
         rows: list[tuple[str, ...]] = [("record", "falls from", "nudged", "to", "nudged", "seen in repeats")]
-        for record, own in zip(self.records, self.islands, strict=True):
-            for one in own:
-                beyond = math.isnan(one.stands_above)
-                ends = ("end of the scan", "-") if beyond else (f"{one.falls_to:.4g}", _range(one.upper))
-                rows.append((record, f"{one.falls_from:.4g}", _range(one.lower), *ends, f"{one.seen:.0%}"))
-            if not own:
+        for record, islands in zip(self.records, self.islands, strict=True):
+            for island in islands:
+                beyond = math.isnan(island.stands_above)
+                ends = ("end of the scan", "-") if beyond else (f"{island.falls_to:.4g}", _range(island.upper))
+                rows.append((record, f"{island.falls_from:.4g}", _range(island.lower), *ends, f"{island.seen:.0%}"))
+            if not islands:
                 rows.append((record, "stands", "-", "-", "-", "-"))
         return rows
 
@@ -102,7 +102,7 @@ class Thresholds(NotebookPicture):
         return html_of(repr(self).strip("<>"), self._rows())
 
     def __repr__(self) -> str:
-        several = sum(len(own) > 1 or any(one.stands_above == one.stands_above for one in own) for own in self.islands)
+        several = sum(len(each) > 1 or any(not math.isnan(it.stands_above) for it in each) for each in self.islands)
         return (
             f"<Thresholds of {len(self.records)} records at {len(self.scales)} scales from {self.scales[0]:g} to "
             f"{self.scales[-1]:g}: {int(np.isfinite(self.lowest).sum())} make it fall, {several} not monotonically>"
@@ -150,8 +150,8 @@ def thresholds(
     """
     builds, tolerance = builds_of(build), require_within("tolerance", tolerance, 1e-6, 0.5)
     levels = require_increasing("scales", scales, "scale", math.inf, "0 and above")
-    moved = (0.0, *(require_within(f"nudges[{i}]", nudge, -0.01, 0.01) for i, nudge in enumerate(nudges)))
-    fell: dict[tuple[str, float], dict[float, bool]] = {(name, nudge): {} for name in builds for nudge in moved}
+    all_nudges = (0.0, *(require_within(f"nudges[{i}]", nudge, -0.01, 0.01) for i, nudge in enumerate(nudges)))
+    fell: dict[tuple[str, float], dict[float, bool]] = {(name, nudge): {} for name in builds for nudge in all_nudges}
     pending = [(repeat, scale) for repeat in fell for scale in levels.tolist()]
     while pending:
         tasks = [_task(builds[name], name, nudge, scale) for (name, nudge), scale in pending]
@@ -163,10 +163,10 @@ def thresholds(
             for low, high in _edges(tried)
             if high - low > tolerance * high
         ]
-    shares = [[np.mean([fell[name, nudge][s] for nudge in moved]) for s in levels.tolist()] for name in builds]
-    islands = tuple(_islands([fell[name, nudge] for nudge in moved]) for name in builds)
+    shares = [[np.mean([fell[name, nudge][s] for nudge in all_nudges]) for s in levels.tolist()] for name in builds]
+    islands = tuple(_islands([fell[name, nudge] for nudge in all_nudges]) for name in builds)
     runs = sum(map(len, fell.values()))
-    return Thresholds(tuple(builds), levels, np.array(shares), islands, moved, runs)
+    return Thresholds(tuple(builds), levels, np.array(shares), islands, all_nudges, runs)
 
 
 def _task(make: Build, name: str, nudge: float, scale: float) -> Analysis:
@@ -200,17 +200,17 @@ def _ranges(tried: Mapping[float, bool]) -> list[Island]:
 
 def _islands(repeats: Sequence[Mapping[float, bool]]) -> tuple[Island, ...]:
     """The ranges of the first repeat, with the range of their edges over all repeats."""
-    own, *others = map(_ranges, repeats)
+    islands, *others = map(_ranges, repeats)
     found = []
-    for one in own:
-        met = [[it for it in other if _meets(one, it)] for other in others]
-        firsts = [one.lower, *(some[0].lower for some in met if some)]
-        lasts = [one.upper, *(some[-1].upper for some in met if some)]
+    for island in islands:
+        overlapping = [[each for each in other if _meets(island, each)] for other in others]
+        firsts = [island.lower, *(matches[0].lower for matches in overlapping if matches)]
+        lasts = [island.upper, *(matches[-1].upper for matches in overlapping if matches)]
         lower, upper = ((min(a for a, _ in bands), max(b for _, b in bands)) for bands in (firsts, lasts))
-        found.append(one._replace(lower=lower, upper=upper, seen=len(firsts) / len(repeats)))
+        found.append(island._replace(lower=lower, upper=upper, seen=len(firsts) / len(repeats)))
     return tuple(found)
 
 
-def _meets(one: Island, other: Island) -> bool:
+def _meets(island: Island, other: Island) -> bool:
     """Whether two ranges have scales in common."""
-    return other.falls_from <= one.falls_to and other.falls_to >= one.falls_from
+    return other.falls_from <= island.falls_to and other.falls_to >= island.falls_from

@@ -237,8 +237,8 @@ class Code:
     @property
     def languages(self) -> list[str]:
         """The languages that every text has."""
-        given = [*self.texts.values(), *(step.text for step in self.steps.values())]
-        return sorted(set.intersection(*map(set, given))) if given else []
+        texts = [*self.texts.values(), *(step.text for step in self.steps.values())]
+        return sorted(set.intersection(*map(set, texts))) if texts else []
 
     def step(self, key: str, of: str = "") -> CodeStep:
         """A step with the numbers of its limit state in their places.
@@ -254,7 +254,7 @@ class Code:
         places = numbers | (asdict(self.states[of]) if of in self.states else {})
         try:
             plain = step.plain or step.text.get("en", key)
-            filled = (one.format(**places) for one in (plain, step.clause, *step.text.values()))
+            filled = (text.format(**places) for text in (plain, step.clause, *step.text.values()))
             plain, clause, *texts = filled
         except (KeyError, IndexError) as error:
             known = ", ".join(f"{{{place}}}" for place in places)
@@ -300,9 +300,9 @@ class Code:
             raise ValueError(f"{path} is not a code of local mechanisms: {error}") from None
 
 
-def _parts_of(given: dict[str, Any]) -> dict[str, Any]:
+def _parts_of(table: dict[str, Any]) -> dict[str, Any]:
     """The arguments of a `Code` that a file gives."""
-    parts = _known("the file", Code, given)
+    parts = _known("the file", Code, table)
     kinds: dict[str, Callable[..., object]] = {"linear": LinearRule, "damage": DamageRule, "dynamic": DynamicRule}
     kinds["confidence"] = ConfidenceRule
     for name in kinds.keys() & parts.keys():
@@ -310,7 +310,7 @@ def _parts_of(given: dict[str, Any]) -> dict[str, Any]:
     kinds = {"states": CodeLimitState, "steps": CodeStep}
     for name, kind in kinds.items():
         require_kind(name, parts[name], dict)
-        parts[name] = {key: _made(f"{name}.{key}", kind, one) for key, one in parts[name].items()}
+        parts[name] = {key: _made(f"{name}.{key}", kind, entry) for key, entry in parts[name].items()}
     require_kind("texts", parts["texts"], dict)
     for name, text in [*parts["texts"].items(), *((f"steps.{key}", step.text) for key, step in parts["steps"].items())]:
         require_kind(name, text, dict)
@@ -319,29 +319,29 @@ def _parts_of(given: dict[str, Any]) -> dict[str, Any]:
     return parts
 
 
-def _made(name: str, kind: Callable[..., object], given: object) -> object:
+def _made(name: str, kind: Callable[..., object], table: object) -> object:
     """A part of a code, whose errors name the table of the file that has it."""
-    require_kind(name, given, dict)
+    require_kind(name, table, dict)
     try:
-        return kind(**_known(name, kind, dict(given)))  # type: ignore[call-overload]
+        return kind(**_known(name, kind, dict(table)))  # type: ignore[call-overload]
     except (TypeError, ValueError) as error:
         raise type(error)(f"{name}: {error}") from None
 
 
-def _known(name: str, kind: Callable[..., object], given: dict[str, Any]) -> dict[str, Any]:
+def _known(name: str, kind: Callable[..., object], table: dict[str, Any]) -> dict[str, Any]:
     """A table of the file whose entries are arguments of a class, with all that have no default."""
-    entries = {one.name: one for one in fields(kind)}  # type: ignore[arg-type]
-    for key in given:
-        require_one_of(f"an entry of {name}", key, entries)
-    one = next((key for key, own in entries.items() if key not in given and _needed(own)), None)
-    if one is not None:
-        raise ValueError(f"{name} has no {one}")
-    return given
+    arguments = {argument.name: argument for argument in fields(kind)}  # type: ignore[arg-type]
+    for key in table:
+        require_one_of(f"an entry of {name}", key, arguments)
+    missing = next((key for key, argument in arguments.items() if key not in table and _needed(argument)), None)
+    if missing is not None:
+        raise ValueError(f"{name} has no {missing}")
+    return table
 
 
-def _needed(own: Field[object]) -> bool:
+def _needed(argument: Field[object]) -> bool:
     """Whether a field of a dataclass has no default."""
-    return own.default is own.default_factory  # both are MISSING
+    return argument.default is argument.default_factory  # both are MISSING
 
 
 @cache

@@ -111,7 +111,7 @@ class Push(NotebookPicture):
         """The direction, a unit vector along x or in space along x, y and z, shape (2,) or (3,)."""
         driver = self.answer.case.effects[-1]
         assert isinstance(driver, Actuator)
-        return driver.way
+        return np.array(driver.direction)
 
     @property
     def d_0(self) -> float:
@@ -421,8 +421,8 @@ class ActuatorRun(PushRun):
 
     def inertia(self, answer: Response, advance: Array) -> Array:
         """The rate of momentum along the direction, with the part of it that is damped away."""
-        way = self.actuator.way
-        momentum = (answer.velocity[:, :, : len(way)] @ way) @ free_masses(self.case)
+        direction = np.array(self.actuator.direction)
+        momentum = (answer.velocity[:, :, : len(direction)] @ direction) @ free_masses(self.case)
         rate = np.diff(momentum[::SAMPLES]) / np.diff(answer.t[::SAMPLES])
         return np.asarray(rate + self.mass_damping * means(momentum))
 
@@ -450,7 +450,7 @@ class ForceRun(PushRun):
     def __post_init__(self) -> None:
         self.weight = weight_of(self.case)
         self.least = min(LEAST_MULTIPLIER_STEP * self.weight / self.actuator.stiffness, self.to / PIECES)
-        speed = 0.0 if self.start is None else float(of_centroid(self.case, self.start[1], self.actuator.way))
+        speed = 0.0 if self.start is None else float(of_centroid(self.case, self.start[1], self.actuator.direction))
         self.speed, self.compression, self.blows = max(speed, 0.0), math.nan, 0
         self.step = max(self.least, self.speed * SHORTEST_PIECE)
 
@@ -489,7 +489,7 @@ class ForceRun(PushRun):
 
     def compression_at(self, answer: Response, force: Array, advance: Array) -> Array:
         """From how far the centroid has moved. One that carries on counts from where the blocks are."""
-        moved = of_centroid(self.case, answer.pose, self.actuator.way)
+        moved = of_centroid(self.case, answer.pose, self.actuator.direction)
         if math.isnan(self.compression):
             self.compression = float(force[0]) / self.actuator.stiffness
             if self.start is not None:

@@ -71,9 +71,9 @@ class Verdict(NamedTuple):
 def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
     """Conditions as rows of a table: limit state, demand, capacity, ratio, HOLDS or FAILS, and the clause."""
     rows: list[tuple[str, ...]] = [("check", "state", "demand", "capacity", "unit", "ratio", "verdict", "clause")]
-    for one in verdicts:
-        numbers = f"{one.demand:.4f}", f"{one.capacity:.4f}", one.unit, ratio_text(one.ratio)
-        rows.append((one.what, one.limit_state, *numbers, one.label, one.clause))
+    for verdict in verdicts:
+        numbers = f"{verdict.demand:.4f}", f"{verdict.capacity:.4f}", verdict.unit, ratio_text(verdict.ratio)
+        rows.append((verdict.what, verdict.limit_state, *numbers, verdict.label, verdict.clause))
     return rows
 
 

@@ -112,8 +112,8 @@ def matched_contacts(
     if k_side is not None:
         e.require_rebound()
     top = 2 * wall.h if not isinstance(side_stop, SideStop) else min(side_stop.top, 2 * wall.h)
-    if doubt := e.doubt(wall, top if k_side is not None else None):
-        warn_of(doubt, Implausible)
+    if difference := e.difference_from(wall, top if k_side is not None else None):
+        warn_of(difference, Implausible)
     standing = GivenWall(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
     match = partial(Match, standing, e, points, accuracy=accuracy, friction=friction, side_friction=side_friction)
     xi_base, xi_side = _matched(match()), 0.0

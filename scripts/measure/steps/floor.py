@@ -51,7 +51,7 @@ class Floor:
                 self.line[f"{name}_{axis}"][:] = lines[name][:, i]
         for name in ("k", "c", "k_s", "c_s", "friction"):
             self.line[name][:] = lines[name]
-        self.line["grip"][:] = lines["grip"][:, 0]
+        self.line["grip"][:] = lines["shear_state"][:, 0]
         self.ends = [np.where(lines[name] < 0, n, lines[name]).astype(np.intc) for name in ("body", "face")]
         self.body = {name: np.zeros(n + 1) for name in (*BODIES, *MOVED)}
         self.body["mass"][:] = np.append(bodies["mass"], 1.0)

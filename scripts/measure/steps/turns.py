@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 
 import numpy as np
@@ -25,11 +24,17 @@ class Turns:
         self.system, self.pool = setup.system, ThreadPool(threads)
         self.books = Books.empty(self.system, len(setup.scene.contacts.joints) + 1)
         self.samples = Samples.room(2, self.system, self.books)
-        start = (0.0,) * len(self.system.axes)
-        self.clock = Clock(0, setup.step_length.default, 10**9, 0, 1, 10**9, math.inf, 0.0, start, 10**9)
+        self.clock = Clock(
+            h=setup.step_length.default,
+            steps_per_sample=10**9,
+            stop=1,
+            last=10**9,
+            ground_acceleration_before=(0.0,) * len(self.system.axes),
+            steps_per_check=10**9,
+        )
         (alone,), _ = threads_of(self.system.bodies, self.system.lines, 1)
         advance(self.system, self.books, self.samples, self.clock, alone)
-        self.clock = self.clock._replace(step=1, row=1)
+        self.clock = self.clock._replace(step=1, sample=1)
         self.steps = for_types_of(advance, self.system, self.books, self.samples, self.clock, alone)
 
     def seconds(self, count: int) -> float:

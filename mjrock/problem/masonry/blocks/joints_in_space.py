@@ -175,13 +175,13 @@ class Faces(NamedTuple):
         return pair[near], face[near], other[near]
 
 
-class Looking(NamedTuple):
-    """Two sides of blocks that look at each other.
+class FacePair(NamedTuple):
+    """Two faces of blocks that face each other.
 
     Args:
         blocks: numbers of the two blocks.
-        sides: numbers of the sides among those of their block.
-        faces: the sides.
+        sides: numbers of the faces among those of their block.
+        faces: the faces.
         axes: two unit vectors in the plane of the first, shape (2, 3).
     """
 
@@ -260,8 +260,8 @@ def joints_in_space(
         own = np.column_stack([face, opposite]) - faces.first[near[pair]]
         rows = zip(near[pair].tolist(), own.tolist(), face.tolist(), opposite.tolist(), strict=True)
         for (i, j), (side, facing), k, m in rows:
-            looking = Looking((i, j), (side, facing), (sides[k], sides[m]), axes[k])
-            joints += _between(blocks, looking, names, (tolerance, gap), known)
+            face_pair = FacePair(blocks=(i, j), sides=(side, facing), faces=(sides[k], sides[m]), axes=axes[k])
+            joints += _between(blocks, face_pair, names, (tolerance, gap), known)
     require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
 
@@ -278,16 +278,16 @@ def _depth_along_edge_axes(block: Convex, neighbour: Convex) -> float:
 
 def _between(
     blocks: Sequence[Shape],
-    looking: Looking,
+    face_pair: FacePair,
     names: Sequence[str],
     within: tuple[float, float],
     known: dict[tuple[bytes, bytes], Array],
 ) -> Iterator[SpaceJoint]:
-    """The joint between two faces that look at each other, if they touch within a tolerance and a gap [m].
+    """The joint between two faces that face each other, if they touch within a tolerance and a gap [m].
 
     The outlines of joints are `known` of faces of the same shape that lie alike over each other.
     """
-    (face, other), (tolerance, gap), axes, sides = looking.faces, within, looking.axes, looking.sides
+    (face, other), (tolerance, gap), axes, sides = face_pair.faces, within, face_pair.axes, face_pair.sides
     normal, origin = face.normal, face.corners[0]
     flat, window = (face.corners - origin) @ axes.T, (other.corners - origin) @ axes.T
     shape = flat.tobytes(), window.tobytes()
@@ -304,7 +304,7 @@ def _between(
     if gaps.max() > gap or gaps.min() < -tolerance:
         return
     places = places + 0.5 * gaps[:, None] * normal  # counterclockwise about the normal out of the first block
-    (below, above), upwards = looking.blocks, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
+    (below, above), upwards = face_pair.blocks, next(x for x in normal[[2, 0, 1]] if abs(x) > LEVEL)
     if blocks[above].fixed or (upwards < 0 and not blocks[below].fixed):
         below, above, normal, places, sides = above, below, -normal, places[::-1], sides[::-1]
     of_below, of_above = (

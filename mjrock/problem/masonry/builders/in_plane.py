@@ -158,7 +158,7 @@ def _standing(
     return Compound(parts, fixed, name) if len(parts) > 1 else replace(parts[0], fixed=fixed, name=name)
 
 
-class Inner(NamedTuple):
+class InnerFace(NamedTuple):
     """A piece of the inner face of a stack: x and z of its lower and upper end [m], and how far its upper end rises as
     its block turns about its outer edge [m]."""
 
@@ -185,24 +185,24 @@ def side_of(blocks: Sequence[FlatBlock], side_stop: bool | SideStop) -> FlatBloc
     length = max(block.length for block in blocks)
     parts = [
         Polygon([(back, low), (x, low), (x_high, high), (back, high)], 2000.0, length)
-        for (x, x_high), (low, high) in _behind([piece for block in standing for piece in _inner(block)], top)
+        for (x, x_high), (low, high) in _behind([piece for block in standing for piece in _inner_faces(block)], top)
     ]
     return Compound(parts, True, "side") if parts[1:] else replace(parts[0], fixed=True, name="side")
 
 
-def _inner(block: FlatBlock) -> list[Inner]:
+def _inner_faces(block: FlatBlock) -> list[InnerFace]:
     """The inner face of a block of a stack, from below: of each part of it its left edge."""
-    low, edge, pieces = float(block.corners[:, 1].min()), float(block.corners[:, 0].max()), list[Inner]()
+    low, edge, pieces = float(block.corners[:, 1].min()), float(block.corners[:, 0].max()), list[InnerFace]()
     for part in block.parts:
         ends = [part.corners[part.corners[:, 1] == z] for z in (part.corners[:, 1].min(), part.corners[:, 1].max())]
         (x, z), (x_high, high) = (tuple(end[end[:, 0].argmin()].tolist()) for end in ends)
-        pieces.append(Inner((x, x_high), (z, high), math.hypot(edge - x_high, high - low) - (high - low)))
+        pieces.append(InnerFace((x, x_high), (z, high), math.hypot(edge - x_high, high - low) - (high - low)))
     return sorted(pieces, key=lambda piece: piece.z)
 
 
-def _behind(pieces: Sequence[Inner], top: float) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+def _behind(pieces: Sequence[InnerFace], top: float) -> list[tuple[tuple[float, float], tuple[float, float]]]:
     """x and z of both ends of each piece of a side stop up to a height [m], see `stack`."""
-    inmost, faces = math.inf, list[Inner]()
+    inmost, faces = math.inf, list[InnerFace]()
     for piece in reversed(pieces):
         x_high = min(inmost, piece.x[1])
         inmost = min(x_high, piece.x[0])

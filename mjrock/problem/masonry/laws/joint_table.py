@@ -43,12 +43,12 @@ PROPERTIES = tuple(Dry().properties)
 """Names of what a joint has, which are keywords of `Masonry` too."""
 
 
-def value_at(name: str, given: FunctionOfJoint[T], joint: AnyJoint) -> T:
+def value_at(name: str, function: FunctionOfJoint[T], joint: AnyJoint) -> T:
     """What a function of the joint gives for one, or a TypeError that says how it is called."""
     try:
-        return given(joint)
+        return function(joint)
     except TypeError as error:
-        raise TypeError(f"{name} = {shown(given)} is not called as {name}(joint): {error}") from None
+        raise TypeError(f"{name} = {shown(function)} is not called as {name}(joint): {error}") from None
 
 
 def properties_of(joints: AnyJoints | None, given: Properties) -> Properties:
@@ -124,8 +124,8 @@ class ByKind:
 
     def __call__(self, joint: AnyJoint) -> float:
         """The value of a joint."""
-        given = self.beds if joint.is_bed else self.others
-        return given(joint) if callable(given) else given
+        value = self.beds if joint.is_bed else self.others
+        return value(joint) if callable(value) else value
 
 
 @dataclass(frozen=True)
@@ -171,12 +171,12 @@ class ByName:
 class OrElse:
     """A function of the joint, and a number that stands where it gives None."""
 
-    given: FunctionOfJoint[float | None]
+    function: FunctionOfJoint[float | None]
     otherwise: float
 
     def __call__(self, joint: AnyJoint) -> float:
         """The value of a joint."""
-        value = self.given(joint)
+        value = self.function(joint)
         return self.otherwise if value is None else value
 
 
@@ -229,23 +229,23 @@ class JointTable(NamedTuple):
     further: dict[str, Array]
 
     @classmethod
-    def from_properties(cls, joints: Sequence[AnyJoint], given: Properties) -> JointTable:
+    def from_properties(cls, joints: Sequence[AnyJoint], values: Properties) -> JointTable:
         """The table of joints from their properties, a number or a function of the joint each.
 
         Raises:
             TypeError, ValueError: with the name of the joint, for a value outside its range or a bond that its springs
                 cannot have.
         """
-        columns = {name: _values(name, given[name], joints) for name in ("k_n", "k_s", "friction", "xi", "frequency")}
-        points = _values("points", given["points"], joints).astype(int)
+        columns = {name: _values(name, values[name], joints) for name in ("k_n", "k_s", "friction", "xi", "frequency")}
+        points = _values("points", values["points"], joints).astype(int)
         for joint, count in zip(joints, points.tolist(), strict=True):
             if isinstance(joint, SpaceJoint):
-                POINTS_IN_SPACE.checked(f"points of {joint.name}" if callable(given["points"]) else "points", count)
-        bonds = _bonds(given["bond"], joints, columns)
+                POINTS_IN_SPACE.checked(f"points of {joint.name}" if callable(values["points"]) else "points", count)
+        bonds = _bonds(values["bond"], joints, columns)
         dry = [bond.further if isinstance(bond, Dry) else NONE_FURTHER for bond in bonds]
         further = {name: np.array([each[name] for each in dry]) for name in NONE_FURTHER}
-        own = tuple(None if isinstance(bond, Dry) else bond for bond in bonds)
-        table = cls(**columns, points=points, bonds=own, further=further)
+        laws = tuple(None if isinstance(bond, Dry) else bond for bond in bonds)
+        table = cls(**columns, points=points, bonds=laws, further=further)
         springs = (column.tolist() for column in (table.k_n, table.k_s, table.friction, points))
         for joint, bond, *numbers in zip(joints, table.bonds, *springs, strict=True):
             if bond is not None:
@@ -266,18 +266,18 @@ class JointTable(NamedTuple):
         """Raise a ValueError that names what takes joints with these numbers alone, if some have others, a bond or an
         own law."""
 
-        def names(some: Sequence[object]) -> str:
-            return named([joint.name for joint, one in zip(joints, some, strict=True) if one])
+        def names(flags: Sequence[object]) -> str:
+            return named([joint.name for joint, flag in zip(joints, flags, strict=True) if flag])
 
-        own = [bond if isinstance(bond, Own) else None for bond in self.bonds]
+        laws = [bond if isinstance(bond, Own) else None for bond in self.bonds]
         numbers = {name: values != NONE_FURTHER[name] for name, values in self.further.items()}
-        unknown = {f"{name} of {names(some)}": name for name, some in numbers.items() if some.any()}
-        if any(own):
-            unknown[f"law of {names(own)}"] = ", ".join(sorted({bond.name for bond in own if bond}))
-        for held, beside in unknown.items():
-            rest = "it" if beside in numbers else "laws of your own"
+        unknown = {f"{name} of {names(differs)}": name for name, differs in numbers.items() if differs.any()}
+        if any(laws):
+            unknown[f"law of {names(laws)}"] = ", ".join(sorted({bond.name for bond in laws if bond}))
+        for label, name in unknown.items():
+            rest = "it" if name in numbers else "laws of your own"
             raise ValueError(
-                f"{held}: {what} knows {', '.join(known[:-1])} and {known[-1]} of a joint, and no {beside}; "
+                f"{label}: {what} knows {', '.join(known[:-1])} and {known[-1]} of a joint, and no {name}; "
                 f"solve_explicit takes {rest}"
             )
         if any(self.bonds):
@@ -288,27 +288,27 @@ class JointTable(NamedTuple):
     @property
     def residual_friction(self) -> Array:
         """Coefficient of friction of joints that have lost their bond [-], shape (joints,)."""
-        given = [bond and bond.residual_friction for bond in self.bonds]
-        return np.array([most if least is None else least for least, most in zip(given, self.friction, strict=True)])
+        residual = [bond and bond.residual_friction for bond in self.bonds]
+        return np.array([whole if left is None else left for left, whole in zip(residual, self.friction, strict=True)])
 
 
-def _values(name: str, given: OfJoint | None, joints: Sequence[AnyJoint]) -> Array:
+def _values(name: str, value_of: OfJoint | None, joints: Sequence[AnyJoint]) -> Array:
     """A property of each joint, with what stands for None, shape (joints,)."""
-    if not callable(given):
-        return np.full(len(joints), FOR_NONE[name] if given is None else given)
-    declaration, values = declared(Dry)[name], [value_at(name, given, joint) for joint in joints]
+    if not callable(value_of):
+        return np.full(len(joints), FOR_NONE[name] if value_of is None else value_of)
+    declaration, values = declared(Dry)[name], [value_at(name, value_of, joint) for joint in joints]
     for i, joint in enumerate(joints):
         value = declaration.checked(f"{name} of {joint.name}", values[i])
         values[i] = FOR_NONE[name] if value is None else value
     return np.array(values)
 
 
-def _bonds(given: OfBond, joints: Sequence[AnyJoint], columns: dict[str, Array]) -> list[Bond | Own | Dry | None]:
+def _bonds(bond_of: OfBond, joints: Sequence[AnyJoint], columns: dict[str, Array]) -> list[Bond | Own | Dry | None]:
     """The bond of each joint, the law of one's own, or the joint with its further numbers, None where it has none."""
     bonds: list[Bond | Own | Dry | None] = []
     for i, joint in enumerate(joints):
-        bond = value_at("bond", given, joint) if callable(given) else given
-        require_kind(f"bond of {joint.name}" if callable(given) else "bond", bond, Bond, OwnLaw, Dry, type(None))
+        bond = value_at("bond", bond_of, joint) if callable(bond_of) else bond_of
+        require_kind(f"bond of {joint.name}" if callable(bond_of) else "bond", bond, Bond, OwnLaw, Dry, type(None))
         if isinstance(bond, OwnLaw):
             bonds.append(Own(bond, float(columns["k_n"][i]), float(columns["friction"][i])))
         else:

@@ -96,7 +96,7 @@ class Programme:
 
     Args:
         matrix: M, moments over the size of their block.
-        grip: the part mu G of it, in a matrix of the same shape.
+        friction_part: the part mu G of it, in a matrix of the same shape.
         weight: w, weight and other constant forces, over the weight of all blocks, and zero in the rows of friction.
         grown: f, likewise.
         edges: directions of the edges of the cones, shape (edges, groups, d).
@@ -108,7 +108,7 @@ class Programme:
     """
 
     matrix: csc_array
-    grip: csc_array
+    friction_part: csc_array
     weight: Array
     grown: Array
     edges: Array
@@ -132,18 +132,19 @@ class Programme:
         balance = [diags_array(1 / sizes) @ part.T for part in (pressing, *rubbing)]
         matrix = csc_array(block_array([[*balance, None], [friction, *[-whole] * (len(edges) + 1)]]))
         rest = csr_array((len(leader), matrix.shape[1] - m))
-        grip = csc_array(block_array([[csr_array((len(sizes), m)), None], [friction, rest]]))
+        friction_part = csc_array(block_array([[csr_array((len(sizes), m)), None], [friction, rest]]))
         total, none = float(np.abs(weight_of(masonry)).sum()), np.zeros(len(leader))
         down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (problem.constant, problem.grown))
         count, yields = len(ties.strength), np.isfinite(ties.strength)
         if count:  # a pull and what is left of it are the strength
             pulls, limit = vstack([ties.columns, csr_array((len(leader), count))]), csr_array(eye_array(count))[yields]
             matrix = csc_array(block_array([[matrix, pulls, None], [None, -limit, -eye_array(limit.shape[0])]]))
-            grip = csc_array(block_array([[grip, None], [None, csr_array((limit.shape[0], count + limit.shape[0]))]]))
+            frictionless = csr_array((limit.shape[0], count + limit.shape[0]))
+            friction_part = csc_array(block_array([[friction_part, None], [None, frictionless]]))
             down, pushed = np.append(down, ties.strength[yields] / total), np.append(pushed, np.zeros(limit.shape[0]))
         return cls(
             matrix,
-            grip,
+            friction_part,
             weight=down,
             grown=pushed,
             edges=edges[:, leader],
@@ -182,12 +183,12 @@ class Programme:
     @cached_property
     def _moving(self) -> csc_array:
         """The equations of z and p in a mechanism."""
-        opening = eye_array(self.matrix.shape[1]), (self.grip - self.matrix).T
+        opening = eye_array(self.matrix.shape[1]), (self.friction_part - self.matrix).T
         return csc_array(block_array([[*opening], [None, csr_array(self.grown[None])]]))
 
     def holds(self, state: State) -> bool:
         """Whether forces balance, nothing that opens or slides does so with the wrong sign, and they share no power."""
-        z = (self.matrix - self.grip).T @ state.p
+        z = (self.matrix - self.friction_part).T @ state.p
         missing = np.abs(self.matrix @ state.x + state.multiplier * self.grown + self.weight).max()
         return bool(max(missing, -z.min() / np.abs(z).max(), abs(state.x @ z)) < STATE_TOLERANCE)
 
@@ -239,8 +240,8 @@ def _starts(programme: Programme, nothing: Array) -> Iterator[Array]:
     for turn in range(TURNS):
         moved = replace(
             programme,
-            matrix=programme.matrix - (1 - share) * programme.grip,
-            weight=programme.weight + (1 - share) * (programme.grip @ last),
+            matrix=programme.matrix - (1 - share) * programme.friction_part,
+            weight=programme.weight + (1 - share) * (programme.friction_part @ last),
         )
         answer = moved.forces(nothing, -1.0)
         if answer.status != 0:

@@ -1,4 +1,4 @@
-"""How many files of the package a change touches: five changes are carried out in a copy of it, and run.
+"""How many files of the package a change touches: five of the six changes are carried out in a copy of it, and run.
 
 The sixth, a number of a joint, stands in `test_number_of_a_joint.py`. The table of all six is in CONTRIBUTING.md.
 """
