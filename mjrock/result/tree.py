@@ -247,7 +247,7 @@ class Reader:
             values = np.asarray(self._arrays[tree["array"]])
         values = np.asarray(values, order=tree.get("order", "C"))
         if tree.get("rows"):
-            values = values.view(np.recarray)
+            values = values.view(np.dtype((np.record, values.dtype)))
         values.setflags(write=not tree.get("fixed", False))
         self._known[path] = values
         return values
