@@ -138,6 +138,7 @@ class ContactSearch:
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
         fresh.finder, fresh.state = self.finder.pending(), self._no_contacts()
+        fresh.law = self.law._replace(known=copy(self.law.known))
         fresh.motion, fresh.joints = Motion.initial(self.limits.start), JointState.intact(*self.joints[:4])
         return fresh
 

@@ -192,7 +192,7 @@ class KnownPairs(NamedTuple):
 
 
 class PairsMet:
-    """Pairs with a joint, and those that have met, whose law is computed once. Runs in two threads may share it."""
+    """Pairs with a joint, and those that have met, whose law is computed once. A run has a copy."""
 
     def __init__(self, known: KnownPairs) -> None:
         self._known = known
