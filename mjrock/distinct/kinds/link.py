@@ -124,7 +124,7 @@ class Kind:
         return rates_of(np.column_stack([table["body"], table["anchor"]]), arms, directions, len(bodies))
 
     def look_ahead(self, steps_ahead: float) -> None:
-        """Let dashpots look ahead by some steps, see `step_length.LEAD`."""
+        """Let dashpots look ahead by some steps, see `step_length.STEPS_AHEAD`."""
 
     def velocity_changes(self, t: float, until: float) -> tuple[Integers, Array]:
         """The bodies that links drive, and the largest change of their velocity between two times [m/s]."""
