@@ -24,6 +24,7 @@ K, DEEPEST = 4e5, 0.02
 STIFFENING = {
     "secant_stiffness": lambda row, depth: row.k * math.sqrt(depth),
     "equivalent_stiffness": lambda row, depth: 0.8 * row.k * math.sqrt(depth),
+    "tangent_stiffness": lambda row, depth: 1.5 * row.k * np.sqrt(depth),
     "largest_stiffness": lambda row: 1.5 * row.k * math.sqrt(DEEPEST),
     "depth_of_force": lambda row, factor, depth: factor ** (2 / 3) * depth,
     "depth_of_energy": lambda row, factor, depth: factor**0.4 * depth,
@@ -44,6 +45,15 @@ def test_the_law_is_that_of_the_spring(stiffening):
     row = rows(kinds(2).line, 1, k=K)[0]
     assert joint_law.normal_force(row, -0.01, 0.0) == pytest.approx(K * 0.01**1.5)
     assert joint_law.stored(row, -0.01) == pytest.approx(0.4 * K * 0.01**2.5)
+    slope = (joint_law.normal_force(row, -0.011, 0.0) - joint_law.normal_force(row, -0.009, 0.0)) / 0.002
+    assert joint_law.tangent_stiffness(row, 0.01) == pytest.approx(slope, rel=1e-3)
+
+
+def test_no_function_of_the_spring_is_forgotten():
+    """They stand from the first to the last in one row of the module."""
+    functions = [name for name, value in vars(joint_law).items() if getattr(value, "__module__", "") == joint_law.__name__]
+    first, last = functions.index("secant_stiffness"), functions.index("depth_of_energy")
+    assert functions[first : last + 1] == list(STIFFENING)
 
 
 def landing(d, h, c=0.0, fall=-0.5, k_s=math.inf):

@@ -168,6 +168,16 @@ def test_all_components_of_a_table(tmp_path):
     assert records.by == {"XYZ.csv": "one file"}
 
 
+def test_components_of_a_table_whose_times_are_in_milliseconds(tmp_path):
+    """The unit of the times alone makes a file a table."""
+    path = written(tmp_path / "a.txt", "t,a (gal)\n" + lines(1e3 * T, 100 * A, between=","))
+    (motion,) = mr.components_in(path, time_unit="ms")
+    assert motion.dt == pytest.approx(0.01)
+    assert motion == mr.GroundMotion.from_csv(path, time_unit="ms")
+    with pytest.raises(ValueError, match="time_unit = 'h' is not one of s, ms"):
+        mr.components_in(path, time_unit="h")
+
+
 def test_a_spreadsheet(tmp_path):
     pandas = pytest.importorskip("pandas")
     pytest.importorskip("openpyxl")

@@ -296,7 +296,8 @@ def components_in(
 ) -> tuple[GroundMotion, ...]:
     """All components of the record in one file: of any format that `GroundMotion.from_file` reads, or of a table.
 
-    A file is read as a table where `dt`, `columns`, `skip` or `sheet` are given. Horizontal components come first.
+    A file is read as a table where `dt`, `columns`, `skip`, `sheet` or a `time_unit` other than "s" are given. Horizontal
+    components come first.
 
     Args:
         path: the file.
@@ -308,7 +309,7 @@ def components_in(
         ImportError: for a format whose library is missing.
         ValueError: as `GroundMotion.from_file` and `GroundMotion.from_csv`.
     """
-    if (dt, columns, skip, sheet) == (None, None, None, None):
+    if time_unit == "s" and all(option is None for option in (dt, columns, skip, sheet)):
         traces = read(path, lambda file: recognised(file, unit))
     else:
         traces = table_traces(path, TableOptions(unit, time_unit, dt, columns, skip, sheet))

@@ -161,7 +161,7 @@ def _of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
 def _require_some(curve: LimitCurve, d: float, alpha_0: float, participation: float) -> None:
     """Warn of a curve that ends at d [m] while something is borne. Raises a ValueError if it begins there."""
     if curve.ended.startswith(MOVED):
-        raise ValueError(f"case = {curve!r} was ended where something is borne; leave out to")
+        raise ValueError(f"case = {curve!r} ends at the argument to, where it still bears something; leave out to")
     if d <= 0:
         raise ValueError(
             f"case = {curve!r} ends as it begins. Of it the linear check alone can be made, with alpha_0 = "

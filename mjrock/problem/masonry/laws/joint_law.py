@@ -1,11 +1,12 @@
 """The law of a joint: what a contact pushes, what its face holds, and what it stores.
 
-A joint pushes and never pulls. Along its face Coulomb's law holds. Explicit steps and their ledger, the search for the
-pose of rest and limit analysis all take the law from here. MuJoCo has the same law in its rows, see `engine.rows`.
+A joint pushes and never pulls. Along its face Coulomb's law holds. Explicit steps, their ledger and the search for the
+pose of rest take the law from here, and limit analysis takes its limit of friction. MuJoCo has the same law in its rows,
+see `engine.rows`.
 
 The spring along the normal is linear, or one whose secant stiffness k is that of the pose, see `kinds.own`: the linear
-spring that holds as much there is stiffer by `bent`. `secant_stiffness` to `depth_of_energy` are the formulas of this
-spring, and explicit steps and the search for the pose of rest have no others.
+spring that stores the same energy there is stiffer by `bent`. The six functions from `secant_stiffness` to
+`depth_of_energy` define this spring, and explicit steps and the search for the pose of rest have no other one.
 
 A new number of a joint is a field of `Law` here and one of the same name, with its range, in `dry.Dry`. The scene and
 the rows of the steps then have it by its name, and solvers that do not know it refuse it by its name.
