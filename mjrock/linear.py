@@ -42,7 +42,7 @@ EIGENVALUE_TOLERANCE = 1e-12
 """Tolerance of the search for a frequency of a large structure, over its square [-]."""
 
 
-def entries(values: Array, bodies: Integers, unknowns: int) -> csr_array:
+def rates_matrix(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     """A matrix with the rates of pairs of bodies.
 
     Args:
@@ -62,7 +62,7 @@ def entries(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     return matrix
 
 
-def of_pairs(values: Array, bodies: Integers, unknowns: int) -> csr_array:
+def sum_of_pair_matrices(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     """The sum of matrices of pairs of bodies, each for the unknowns of the first and then of the second one.
 
     Args:
@@ -115,7 +115,7 @@ def rates_of(pair: Integers, arms: tuple[Array, Array], direction: Array, bodies
         x, z = direction[:, 0], direction[:, -1]
         turning = (arm[:, 1] * x - arm[:, 0] * z)[:, None] if plane else np.cross(arm, direction)
         sides.append(sign * np.hstack([direction, turning]))
-    return entries(np.stack(sides, axis=1), np.asarray(pair, dtype=np.int64), (3 if plane else 6) * bodies)
+    return rates_matrix(np.stack(sides, axis=1), np.asarray(pair, dtype=np.int64), (3 if plane else 6) * bodies)
 
 
 def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
@@ -127,22 +127,22 @@ def averaged(rows: csr_array, group: Integers, count: int) -> csr_array:
     return csr_array(sums)
 
 
-def times(factors: Array, rows: csr_array) -> csr_array:
+def scaled_rows(factors: Array, rows: csr_array) -> csr_array:
     """The rows of a matrix, each times its factor: what a diagonal matrix gives that multiplies it, in less time."""
     values = np.repeat(factors, np.diff(rows.indptr)) * rows.data
     return csr_array((values, rows.indices, rows.indptr), shape=rows.shape)
 
 
-def times_both(factors: Array, matrix: csr_array) -> csr_array:
+def scaled_rows_and_columns(factors: Array, matrix: csr_array) -> csr_array:
     """The rows and the columns of a matrix, each times its factor."""
-    product = times(factors, matrix)
+    product = scaled_rows(factors, matrix)
     product.data *= factors[product.indices]
     return product
 
 
-def sprung(rates: csr_array, springs: Array) -> csr_array:
+def stiffness_of_springs(rates: csr_array, springs: Array) -> csr_array:
     """Stiffness of springs [N/m] whose rates are these."""
-    return csr_array(times(springs, rates).T @ rates)
+    return csr_array(scaled_rows(springs, rates).T @ rates)
 
 
 class _Balance:
@@ -241,7 +241,7 @@ def loose(rows: csr_array) -> Array:
 
 def highest_square(stiffness: csr_array, masses: Array) -> float:
     """The highest square of a natural frequency [rad2/s2]."""
-    matrix = times_both(1 / np.sqrt(masses), stiffness)
+    matrix = scaled_rows_and_columns(1 / np.sqrt(masses), stiffness)
     if len(masses) <= SOLVED_IN_FULL:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])
     start = np.random.default_rng(0).random(len(masses))
@@ -262,7 +262,7 @@ def lowest_square(stiffness: csr_array, masses: Array, constraints: csr_array, r
         rigid: square up to which a motion is one that nothing resists, over the highest [-].
     """
     n, root = len(masses), 1 / np.sqrt(masses)
-    stiffness = times_both(root, stiffness)
+    stiffness = scaled_rows_and_columns(root, stiffness)
     if n <= SOLVED_IN_FULL:
         return _lowest_in_full(stiffness, constraints.toarray() * root, rigid)
     constraints = csr_array(constraints @ diags_array(root))

@@ -59,7 +59,7 @@ def require_nothing_forgotten(start: object) -> None:
     joints = {
         masonry.joints[int(memory.system.lines["group"][i])].name: None
         for law in (memory.system.laws if any(bonds) else ())
-        for i in np.flatnonzero(law.marked(bonds)).tolist()
+        for i in np.flatnonzero(law.has_changed(bonds)).tolist()
         if memory.system.lines["group"][i] < len(masonry.joints)
     }
     if joints:
@@ -101,7 +101,7 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
     carried.lines["support"][: len(system.lines)] = system.lines["support"]
     carried.lines["widest"] = 0.0
     guided_as(carried.bodies, system.bodies)
-    links = tuple(table.going_on(before) for table, before in zip(system.links, carried.links, strict=True))
-    laws = tuple(law.going_on(now) for law, now in zip(carried.laws, system.laws, strict=True))
+    links = tuple(table.resumed(before) for table, before in zip(system.links, carried.links, strict=True))
+    laws = tuple(law.resumed(now) for law, now in zip(carried.laws, system.laws, strict=True))
     carried = system._replace(bodies=carried.bodies, lines=carried.lines, laws=laws, links=links)
     return carried.with_room_for_friction()

@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 from scipy.sparse import csr_array, vstack
 
-from ..linear import block_diagonal, rates_of, times
+from ..linear import block_diagonal, rates_of, scaled_rows
 from ..problem.masonry.blocks.joints_in_space import tangent_axes
 from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
@@ -84,7 +84,7 @@ def highest(rates: csr_array, weights: Array, root: csr_array) -> float:
     stiff = np.flatnonzero(weights)
     if not stiff.size:
         return 0.0
-    scaled = times(np.sqrt(weights[stiff]), rates[stiff]) @ root
+    scaled = scaled_rows(np.sqrt(weights[stiff]), rates[stiff]) @ root
     matrix = scaled.T @ scaled if len(stiff) > MANY_SPRINGS else scaled @ scaled.T
     if len(stiff) <= 20:
         return float(np.linalg.eigvalsh(matrix.toarray())[-1])

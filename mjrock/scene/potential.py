@@ -46,7 +46,7 @@ from ..geometry.kinematics import (
 )
 from ..geometry.poses import at_rest
 from ..geometry.vectors import Vector, dot, minus, plus, vector
-from ..linear import entries, highest_square, of_pairs, sprung, summed
+from ..linear import highest_square, rates_matrix, stiffness_of_springs, sum_of_pair_matrices, summed
 from ..problem.masonry.laws.joint_law import LawRows, law_rows, resting, stored, tangent_stiffness
 from ..problem.masonry.laws.own_law import OwnSprings
 from ..quantities import GRAVITY, Array, Flags, Integers, frozen
@@ -242,7 +242,7 @@ class Potential:
 
     def rates(self, pose: Array) -> csr_array:
         """Rates of the openings for unit velocities, shape (m + t, n nv)."""
-        return entries(self.pair_rates(pose), self._bodies, len(self.structure.masses))
+        return rates_matrix(self.pair_rates(pose), self._bodies, len(self.structure.masses))
 
     def pair_rates(self, pose: Array) -> Array:
         """The same for the velocities of the two bodies of each contact and tie, shape (m + t, 2, nv)."""
@@ -258,7 +258,7 @@ class Potential:
         rest, which turn with its body, where friction acts: halfway between the point and the face.
         """
         rates, masses = self.pair_slip_rates(pose), self.structure.masses
-        return tuple(entries(values, self._bodies[: len(values)], len(masses)) for values in rates)
+        return tuple(rates_matrix(values, self._bodies[: len(values)], len(masses)) for values in rates)
 
     def pair_slip_rates(self, pose: Array) -> Array:
         """The same for the velocities of the two bodies of each contact, shape (directions, m, 2, nv)."""
@@ -318,7 +318,7 @@ class Potential:
 
     def stiffness(self, pose: Array, springs: Array) -> csr_array:
         """Stiffness of springs of k [N/m], shape (m + t,), at the openings' rates, shape (n nv, n nv)."""
-        return sprung(self.rates(pose), springs)
+        return stiffness_of_springs(self.rates(pose), springs)
 
     def curvature(self, pose: Array, friction: Array | None = None, pushes: Array | None = None) -> csr_array:
         """Geometric stiffness: the second derivatives of the openings and slips, times the forces, shape (n nv, n nv).
@@ -347,7 +347,7 @@ class Potential:
             batch = loaded[start : start + SPRINGS_PER_BATCH]
             curvatures = np.zeros((len(batch), 2 * places.freedom.nv, 2 * places.freedom.nv))
             _curvatures(places, ties, frames, still, (pushes, friction), batch, curvatures)
-            parts.append(of_pairs(curvatures, self._bodies[batch], len(masses)))
+            parts.append(sum_of_pair_matrices(curvatures, self._bodies[batch], len(masses)))
         of_springs = parts[0] if len(parts) == 1 else summed(parts)
         if not len(forces.body):
             return of_springs

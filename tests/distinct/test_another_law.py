@@ -51,7 +51,8 @@ def test_the_law_is_that_of_the_spring(stiffening):
 
 def test_no_function_of_the_spring_is_forgotten():
     """They stand from the first to the last in one row of the module."""
-    functions = [name for name, value in vars(joint_law).items() if getattr(value, "__module__", "") == joint_law.__name__]
+    of_module = joint_law.__name__
+    functions = [name for name, value in vars(joint_law).items() if getattr(value, "__module__", "") == of_module]
     first, last = functions.index("secant_stiffness"), functions.index("depth_of_energy")
     assert functions[first : last + 1] == list(STIFFENING)
 

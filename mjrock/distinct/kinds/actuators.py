@@ -9,7 +9,7 @@ from scipy.sparse import csr_array
 
 from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, increase, plus, read, scaled, spun
-from ...linear import entries
+from ...linear import rates_matrix
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array, Integers
 from ...scene.parts import GROUND
@@ -73,7 +73,7 @@ class Actuators(Kind, Histories):
         turning = np.zeros((len(self.rows), 2 * directions.shape[1] - 3))
         shares = np.hstack([directions, turning])[:, None] * (mass / mass.sum())[:, None]
         pairs = np.broadcast_to(np.arange(len(bodies)), shares.shape[:2])
-        return csr_array(super().rates(bodies) + entries(shares, pairs, shares.shape[1] * shares.shape[2]))
+        return csr_array(super().rates(bodies) + rates_matrix(shares, pairs, shares.shape[1] * shares.shape[2]))
 
     def velocity_changes(self, t: float, until: float) -> tuple[Integers, Array]:
         """Of actuators that drive a block, by their histories."""
@@ -86,7 +86,7 @@ class Actuators(Kind, Histories):
         self.rows["reach"] += displacement[:, 0]
         return Actuators(self.rows, self.drives._replace(moved=self.drives.moved - displacement))
 
-    def going_on(self, before: Self) -> Self:
+    def resumed(self, before: Self) -> Self:
         """The same ones go on from where those before had driven their blocks."""
         same = ["body", "at", "between", "k", "c"]
         if len(before.rows) == len(self.rows) and not (before.rows[same] != self.rows[same]).any():

@@ -117,7 +117,7 @@ class JointLaw:
         for name in ("k", "shear_state", "shear_force", "push"):
             self.rows[name][which] = 0.0
 
-    def beyond(self, joint: Integers, found: Rows) -> Rows:
+    def contact_rows(self, joint: Integers, found: Rows) -> Rows:
         """Rows for lines that are found where blocks are beyond their joints, none where the law ends with its joint.
 
         Args:
@@ -142,14 +142,14 @@ class JointLaw:
         """Reduce the law of found lines to a share, where the time step requires softer contacts [-]."""
 
     @staticmethod
-    def bend(laws: Rows, lines: Rows, depth: Array) -> None:
+    def set_secant_stiffness(laws: Rows, lines: Rows, depth: Array) -> None:
         """Give such lines the springs that the law has at some depths [m]."""
 
-    def marked(self, bonds: tuple[Any, ...]) -> Flags:
+    def has_changed(self, bonds: tuple[Any, ...]) -> Flags:
         """Which lines remember something, by what each joint has for its bond, shape (rows,)."""
         return np.zeros(len(self.rows), dtype=bool)
 
-    def going_on(self, now: Self) -> Self:
+    def resumed(self, now: Self) -> Self:
         """The law with which a run starts that carries on the run of this one, beside that of a start from rest."""
         return self
 

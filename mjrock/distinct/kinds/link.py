@@ -134,7 +134,7 @@ class Kind:
         """The links for a run that carries on from a time [s], which counts its time from there."""
         return self
 
-    def going_on(self, before: Self) -> Self:
+    def resumed(self, before: Self) -> Self:
         """The links with which a run starts that carries on one with the links before."""
         for name in ("support", "number", "account"):
             before.rows[name] = self.rows[name]

@@ -113,11 +113,11 @@ class Bonds(JointLaw, Table):
         self.rows["secant"][which & (self.rows["k"] > 0)] = 0.0
         super().release(lines, which)
 
-    def marked(self, bonds: tuple[Any, ...]) -> Flags:
+    def has_changed(self, bonds: tuple[Any, ...]) -> Flags:
         """Those that have lost a part of it."""
         return np.asarray((self.rows["share"] > 0) & (self.rows["integrity"] < 1))
 
-    def going_on(self, now: Self) -> Self:
+    def resumed(self, now: Self) -> Self:
         """Ages count from the start of each run."""
         self.rows["age"] = 0.0
         return self

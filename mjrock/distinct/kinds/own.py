@@ -36,7 +36,7 @@ from .link import Table
 
 DEEPER = 2.0
 """Closing for which steps are stable, over the largest at rest [-]."""
-GONE = math.exp(-9)
+EXHAUSTED_TENSION = math.exp(-9)
 """Share of its tension that is left of a law which counts as one that pulls no more [-]."""
 NO_RATE = 1e-12
 """Rate below which a dashpot has no force [m/s]."""
@@ -118,7 +118,7 @@ class OwnLaws(JointLaw, Table):
         return law
 
     def begin(self, lines: Rows, which: Flags, bond: Own, area: Array) -> None:
-        """A law that pulls holds its lines alone, and their faces have no end."""
+        """Write the numbers of a law into its rows. A law that pulls holds its lines alone; their faces have no end."""
         columns: dict[str, Any] = {
             "address": address_of(type(bond.law)),
             "area": area,
@@ -136,11 +136,11 @@ class OwnLaws(JointLaw, Table):
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
-        """They answer at the pose."""
+        """Add the forces of own laws at the pose. A law that pulls holds its line, and another one presses."""
         for p in range(len(self.rows)):
             line, law = system.lines[p], self.rows[p]
             if law.k > 0:
-                if law.pulls > 0 and law.values[OF_LOST] > 1 - GONE:
+                if law.pulls > 0 and law.values[OF_LOST] > 1 - EXHAUSTED_TENSION:
                     press_only(books, line, law)
                 if law.pulls > 0:
                     hold_by_law(system, books, line, law, h)
@@ -169,7 +169,7 @@ class OwnLaws(JointLaw, Table):
         return bool(row.k > 0 and row.pulls > 0)
 
     def springs(self) -> dict[str, Array]:
-        """The largest up to a multiple of the closing at rest."""
+        """Springs and dashpots for the length of a step: the largest up to `DEEPER` times the closing at rest."""
         dry = super().springs()
         return dry | {"k": np.asarray(self.rows["stiffest"]), "c": np.asarray(self.rows["strongest"])}
 
@@ -178,7 +178,7 @@ class OwnLaws(JointLaw, Table):
         for name in ("k", "push", "shear_force"):
             self.rows[name][: len(which)][which] = 0.0
 
-    def beyond(self, joint: Integers, found: Rows) -> Rows:
+    def contact_rows(self, joint: Integers, found: Rows) -> Rows:
         """The law of a place is scaled by its spring, and presses only. A law with a memory ends with its joint: a new
         place would have to harden again."""
         added = rows(self.rows.dtype, len(joint) if len(self.rows) else 0)
@@ -198,7 +198,7 @@ class OwnLaws(JointLaw, Table):
         return added
 
     def with_search_lines(self, count: int, kept: Flags, added: Rows) -> Self:
-        """All lines have a row."""
+        """The rows of the lines that are kept, and those that are added. Every line has one."""
         if not len(self.rows):
             return self
         return self._replace(rows=joined(self.rows[:count], chosen(self.rows[count:], kept), added))
@@ -215,13 +215,14 @@ class OwnLaws(JointLaw, Table):
 
     @staticmethod
     def soften(laws: Rows, share: Array) -> None:
-        """The whole law is scaled."""
+        """Scale whole laws by shares."""
         for name in ("k", "c", "area", "stiffest", "strongest") if len(laws) else ():
             laws[name] *= share
 
     @staticmethod
-    def bend(laws: Rows, lines: Rows, depth: Array) -> None:
-        """Springs of the law at some depths."""
+    def set_secant_stiffness(laws: Rows, lines: Rows, depth: Array) -> None:
+        """Give lines the secant stiffness of their laws at some depths [m], and what a linear spring of the same energy
+        has beyond it."""
         has_law = laws["k"] > 0 if len(laws) else np.zeros(0, dtype=bool)
         lines["c"][: len(has_law)][has_law & (laws["damps"] > 0)] = 0.0
         for i in np.flatnonzero(has_law & (depth[: len(has_law)] > 0)).tolist():
@@ -230,16 +231,16 @@ class OwnLaws(JointLaw, Table):
             lines["k"][i] = law.area * law.values[OF_STRESS] / closing
             lines["bent"][i] = 2 * law.area * law.values[OF_ENERGY] / closing**2 - lines["k"][i]
 
-    def marked(self, bonds: tuple[Any, ...]) -> Flags:
+    def has_changed(self, bonds: tuple[Any, ...]) -> Flags:
         """Those whose numbers are not those of a new line."""
-        marked, known = super().marked(bonds), slice(len(ANSWERS), None)
+        changed, known = super().has_changed(bonds), slice(len(ANSWERS), None)
         for i in np.flatnonzero((self.rows["address"] != 0) & (self.rows["remembers"] > 0)).tolist():
             row = self.rows[i]
-            marked[i] = (row["values"][known] != bonds[row["joint"]].values[known]).any()
-        return marked
+            changed[i] = (row["values"][known] != bonds[row["joint"]].values[known]).any()
+        return changed
 
-    def going_on(self, now: Self) -> Self:
-        """Addresses are those of this process."""
+    def resumed(self, now: Self) -> Self:
+        """The rows of an earlier process, with the addresses that the compiled laws have in this one."""
         has_law = self.rows["address"] != 0
         addresses = dict(zip(now.rows["joint"].tolist(), now.rows["address"].tolist(), strict=True))
         self.rows["address"][has_law] = [addresses[joint] for joint in self.rows["joint"][has_law].tolist()]

@@ -51,9 +51,9 @@ class OwnLinks(Kind, Table):
         """All of them."""
         self.rows["steps_ahead"] = steps_ahead
 
-    def going_on(self, before: Self) -> Self:
+    def resumed(self, before: Self) -> Self:
         """Addresses are those of this process."""
-        carried = super().going_on(before)
+        carried = super().resumed(before)
         carried.rows["address"] = self.rows["address"]
         return carried
 

@@ -241,7 +241,7 @@ class ContactSearch:
         law = self.law.of_places(number, found.share, found.area, self.count)
         for name, column in law.items():
             new.rows[name] = column
-        own = [(each, each.beyond(self._joints_of(number), new.rows)) for each in bonded]
+        own = [(each, each.contact_rows(self._joints_of(number), new.rows)) for each in bonded]
         springs = law
         for each, added in own:
             springs = each.stiffest(added, springs)
@@ -252,10 +252,10 @@ class ContactSearch:
         keep_depths(new, found, gone, pairs, blocks)
         for each, added in own:
             each.soften(added, share)
-            each.bend(added, new.rows, new.depth)
+            each.set_secant_stiffness(added, new.rows, new.depth)
         hand_over(new, found, gone, pairs, blocks)
         for each, added in own:
-            each.bend(added, new.rows, new.depth)
+            each.set_secant_stiffness(added, new.rows, new.depth)
         for place in unsound(new.rows)[:1]:
             one, other = (self.names[int(block[place])] for block in (found.face, found.other))
             raise ArithmeticError(f"the contact of {one} and {other}")

@@ -296,8 +296,8 @@ def components_in(
 ) -> tuple[GroundMotion, ...]:
     """All components of the record in one file: of any format that `GroundMotion.from_file` reads, or of a table.
 
-    A file is read as a table where `dt`, `columns`, `skip`, `sheet` or a `time_unit` other than "s" are given. Horizontal
-    components come first.
+    A file is read as a table where `dt`, `columns`, `skip`, `sheet` or a `time_unit` other than "s" are given.
+    Horizontal components come first.
 
     Args:
         path: the file.

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array, vstack
 
 from ...geometry.convex import exact_shares, sectioned, spread, within
-from ...linear import averaged, block_diagonal, entries, lowest_square, rates_of, sprung
+from ...linear import averaged, block_diagonal, lowest_square, rates_matrix, rates_of, stiffness_of_springs
 from ...quantities import Array, Flags, Integers
 from ..damping.contacts import even_lines
 from .blocks.compound import AnyBlock
@@ -200,7 +200,7 @@ def mean_slip_rates(blocks: Sequence[AnyBlock], lines: Lines, joints: int) -> cs
         number = free_numbers(blocks)
         spins = lines.normal[:, None] * np.array([[1.0], [-1.0]])
         values = np.concatenate([np.zeros_like(spins), spins], axis=-1)
-        twists = entries(values, number[np.column_stack([lines.body, lines.face])], parts[0].shape[1])
+        twists = rates_matrix(values, number[np.column_stack([lines.body, lines.face])], parts[0].shape[1])
         parts.append(averaged(twists, lines.joint, joints))
     return parts[0] if len(parts) == 1 else csr_array(vstack(parts))
 
@@ -224,12 +224,13 @@ def lowest_frequency(
     opening = about_axes(rates(blocks, lines, lines.normal))
     sliding = about_axes(mean_slip_rates(blocks, lines, len(friction)))
     sticking = np.isin(np.arange(len(friction)), lines.joint) & (friction > 0)
-    sticking_rates, stiffness = sliding[np.tile(sticking, sliding.shape[0] // len(sticking))], sprung(opening, lines.k)
+    sticking_rates = sliding[np.tile(sticking, sliding.shape[0] // len(sticking))]
+    stiffness = stiffness_of_springs(opening, lines.k)
     square = lowest_square(stiffness, masses, sticking_rates, UNRESISTED)
     if square == 0:
         springs = np.where(np.isfinite(along) & (friction > 0)[lines.joint], along, 0.0)
         for tangent in lines.tangents:
-            stiffness = stiffness + sprung(about_axes(rates(blocks, lines, tangent)), springs)
+            stiffness = stiffness + stiffness_of_springs(about_axes(rates(blocks, lines, tangent)), springs)
         square = lowest_square(stiffness, masses, sticking_rates[:0], UNRESISTED)
     return math.sqrt(square)
 

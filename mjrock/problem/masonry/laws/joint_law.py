@@ -1,8 +1,8 @@
 """The law of a joint: what a contact pushes, what its face holds, and what it stores.
 
 A joint pushes and never pulls. Along its face Coulomb's law holds. Explicit steps, their ledger and the search for the
-pose of rest take the law from here, and limit analysis takes its limit of friction. MuJoCo has the same law in its rows,
-see `engine.rows`.
+pose of rest take the law from here, and limit analysis takes its limit of friction. MuJoCo has the same law in rows of
+its own, see `engine.rows`.
 
 The spring along the normal is linear, or one whose secant stiffness k is that of the pose, see `kinds.own`: the linear
 spring that stores the same energy there is stiffer by `bent`. The six functions from `secant_stiffness` to
