@@ -276,8 +276,8 @@ class Plan:
 
     def _read(self, field: Field, state: Document) -> Document:
         fields = self.tables[self.variant(field, state).id]
-        known_fields = {key: self.field(fields, key) for key, one in state.items() if one != ""}
-        return {key: self._value(field, state[key]) for key, field in known_fields.items()}
+        fields_by_key = {key: self.field(fields, key) for key, one in state.items() if one != ""}
+        return {key: self._value(field, state[key]) for key, field in fields_by_key.items()}
 
     def _value(self, field: Field | None, value: object) -> object:
         if isinstance(value, Mapping):

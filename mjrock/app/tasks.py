@@ -178,14 +178,15 @@ def run(request: Payload, send: Send) -> None:
         assessment = folder.assessment()
         analyses = assessment.analyses()
         sender = Sender(send, words, sum(map(len, analyses.values())))
-        responses: dict[str, list[Response]] = {name: [] for name, runs in analyses.items() if runs}
-        for name, analysis in ((name, analysis) for name, runs in analyses.items() for analysis in runs):
-            with progress_given_to(sender):
-                responses[name].append(analysis.solve())
-            sender.before += 1
+        responses: dict[str, list[Response]] = {}
+        for name, runs in analyses.items():
+            for analysis in runs:
+                with progress_given_to(sender):
+                    responses.setdefault(name, []).append(analysis.solve())
+                sender.before += 1
         notes = folder.notes(words)
         parts = dynamic_answers(assessment, responses, words)
-        parts += [part for name, found in responses.items() for part in run_parts(name, found, words)]
+        parts += [part for name, of_one in responses.items() for part in run_parts(name, of_one, words)]
         send({"answers": "".join([*parts, *notes])})
         film = view(farthest_response(list(chain(*responses.values()))), folder.path / "film.html")
         send({"keep": {"film": film.read_bytes(), "responses": pickle.dumps(responses)}})

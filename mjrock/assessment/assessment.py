@@ -151,11 +151,11 @@ class Assessment:
 
         problem: Any = next(iter(self.mechanisms.values())).problem
         checks: dict[str, Any] = {name: [check] for name, check in self.check().items()} if self.has_site else {}
-        for name, responses_of_one in (runs or {}).items():
+        responses_by_name = dict(runs or {})
+        for name, responses_of_one in responses_by_name.items():
             mechanism = self.mechanisms[name]
             if (verdict := self._call(mechanism, partial(mechanism.verdict_on, responses_of_one))) is not None:
                 checks.setdefault(name, []).append(verdict)
-        responses_by_name = dict(runs or {})
         shakings = {name: self.mechanisms[name].shaking for name in responses_by_name}
         options: dict[str, Any] = {
             "checks": checks or None,

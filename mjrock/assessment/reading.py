@@ -261,9 +261,9 @@ class Reader:
             return self.make(rest, maker)
         mapped = next((kind for kind in kinds if get_origin(kind) is not None and is_mapping(kind)), None)
         if mapped is not None:
-            hints, within = kinds_and_range(get_args(mapped)[1], None)
+            item_kinds, within = kinds_and_range(get_args(mapped)[1], None)
             items = table.values.items()
-            return {name: self._of_kinds(hints, within, item, table.place_of(name)) for name, item in items}
+            return {name: self._of_kinds(item_kinds, within, item, table.place_of(name)) for name, item in items}
         raise self._wrong(table.place, table, kinds, None)
 
     def _wrong(self, place: Place, value: object, kinds: tuple[Hint, ...], within: Within | None) -> RefusedError:
@@ -366,10 +366,10 @@ def spelt_kinds(kinds: tuple[Hint, ...], within: Within | None) -> str:
     """What an argument of some types takes, in words."""
     texts: list[str] = []
     if any(kind in NUMERIC or get_origin(kind) in NUMERIC for kind in kinds):
-        each = Message(" of {range}", range=spelt_range(within)) if within and math.isfinite(within.high) else ""
+        range_text = Message(" of {range}", range=spelt_range(within)) if within and math.isfinite(within.high) else ""
         example = examples_of(within.unit) if within and within.unit else ""
         unit = Message(", or a text such as {example}", example=example) if example else ""
-        texts.append(Message("a number{of}{unit}", of=each, unit=unit))
+        texts.append(Message("a number{of}{unit}", of=range_text, unit=unit))
     texts += [Message("true or false")] if bool in kinds else []
     if known := [choice for kind in kinds for choice in choices_of(kind)]:
         texts.append(Message("one of {known}", known=", ".join(known)))
@@ -379,9 +379,9 @@ def spelt_kinds(kinds: tuple[Hint, ...], within: Within | None) -> str:
         texts.append(Message("a table of {names}", names=named(list(classes))))
     for kind in kinds:
         if (items := items_of(kind)) is not None:
-            each = spelt_kinds(kinds_and_range(items[0], within)[0], None)
-            several = Message("a list of {count}, each {of}", count=len(items), of=each)
-            texts.append(Message("a list, each {of}", of=each) if items[-1] is ... else several)
+            item_text = spelt_kinds(kinds_and_range(items[0], within)[0], None)
+            several = Message("a list of {count}, each {of}", count=len(items), of=item_text)
+            texts.append(Message("a list, each {of}", of=item_text) if items[-1] is ... else several)
         elif is_mapping(kind):
             texts.append(Message("a table of texts"))
     return alternatively(texts or [Message("nothing that a file can have")])

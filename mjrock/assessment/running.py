@@ -122,7 +122,7 @@ def _run(reader: Reader, table: Table, wall: Block | None) -> dict[str, object]:
     solver = reader.known_name(table, "solver", SOLVERS, usual_solver(wall))
     options = reader.arguments(table, run_maker(solver))
     options.pop("solver", None)
-    polarities = {name: options.pop(name) for name in ("polarities",) if name in options}
+    polarities = {"polarities": options.pop("polarities")} if "polarities" in options else {}
     return {"solver": solver, "options": options} | polarities
 
 
@@ -164,8 +164,8 @@ def _records_of_table(reader: Reader, table: Table) -> RecordSet:
         if isinstance(value, list) and name in maker.keys and set(maker.keys[name].kinds) <= {int, float}
     }
     if not lists:
-        records = reader.make(rest, maker)
-        return records if isinstance(records, RecordSet) else RecordSet({records.name: (records,)})
+        made = reader.make(rest, maker)
+        return made if isinstance(made, RecordSet) else RecordSet({made.name: (made,)})
     records_by_value = RecordSet()
     for values in product(*lists.values()):
         motion = reader.make(replace(rest, values=rest.values | dict(zip(lists, values, strict=True))), maker)

@@ -135,8 +135,10 @@ def parsed(text: str) -> dict[str, Any]:
         AssessmentError: with the line, for a text that is not TOML, is too long, or is nested too deeply.
     """
     if len(text) > MOST_CHARACTERS:
-        fault = Message("has {count} characters; the valid range is 0 to {most}", count=len(text), most=MOST_CHARACTERS)
-        raise AssessmentError((Fault((), fault),))
+        message = Message(
+            "has {count} characters; the valid range is 0 to {most}", count=len(text), most=MOST_CHARACTERS
+        )
+        raise AssessmentError((Fault((), message),))
     try:
         tables = tomllib.loads(text)
         if not is_deep(tables):
@@ -150,8 +152,8 @@ def parsed(text: str) -> dict[str, Any]:
             cause = Message("a number has a comma; the decimal mark is a point, as in 0.5")
         raise AssessmentError((Fault((), Message("is not TOML: {cause}", cause=cause), line),)) from None
     except RecursionError:
-        fault = Message("is nested too deeply; a file has some five levels")
-        raise AssessmentError((Fault((), fault, 1),)) from None
+        message = Message("is nested too deeply; a file has some five levels")
+        raise AssessmentError((Fault((), message, 1),)) from None
 
 
 def is_deep(document: Document) -> bool:

@@ -88,8 +88,8 @@ class Writer:
             if name not in below:
                 yield from explained(f"{toml_key(name)} = {toml_value(item)}", keys.get(name, {}))
         if "mechanisms" in value:  # what stands above them is for all
-            common = [item.get("properties", {}).keys() for item in self.alternatives(node)]
-            keys = {name: key for name, key in keys.items() if all(name in item for item in common)}
+            common = [alternative.get("properties", {}).keys() for alternative in self.alternatives(node)]
+            keys = {name: key for name, key in keys.items() if all(name in known for known in common)}
         for name, key in keys.items():
             if not is_explained and name not in value and "const" not in key and not self.holds_tables(key):
                 yield from explained(f"#{name} = {default_of(key)}".rstrip(), key)

@@ -18,9 +18,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         ("inspect", command, "what they are, the worst first"),
         ("measure", measure_command, "drop, press and push a contact of two geoms, and compare"),
     ):
-        parser_of = commands.add_parser(name, help=line)
-        module.add_arguments(parser_of)
-        parser_of.set_defaults(answer=module.answer)
+        subparser = commands.add_parser(name, help=line)
+        module.add_arguments(subparser)
+        subparser.set_defaults(answer=module.answer)
     args = parser.parse_args(argv)
     try:
         text = args.answer(args)

@@ -286,12 +286,12 @@ class PairContact:
     def __str__(self) -> str:
         """Its numbers as one line of text."""
         with_gravity = "" if self.speed is None else f" at {self.speed:g} m/s with gravity"
-        of_friction = f"; friction {self.friction[0]:g}, impratio {self.impratio:.2g}" if self.condim > 1 else ""
+        friction_text = f"; friction {self.friction[0]:g}, impratio {self.impratio:.2g}" if self.condim > 1 else ""
         at_rest = f"depth {self.depth:.3g} m under the weight" if self.load > NO_LOAD else "carries nothing at rest"
         return (
             f"{self.label}: k = {self.k:.4g} N/m, c = {self.c:.4g} N s/m at {self.contacts} "
             f"point{'s' * (self.contacts > 1)} of {self.mass:.4g} kg; e = {self.restitution:.3g}{with_gravity}, "
-            f"xi = {self.xi:.3g}; {at_rest}{of_friction}; timestep {self.timestep:g} s"
+            f"xi = {self.xi:.3g}; {at_rest}{friction_text}; timestep {self.timestep:g} s"
         )
 
     def _pair_in(self, model: mujoco.MjModel) -> GeomPair:

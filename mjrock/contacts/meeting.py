@@ -449,8 +449,8 @@ class BodyPair:
         bodies = model.body_weldid[model.geom_bodyid]
         ours, theirs = (np.flatnonzero(bodies == bodies[geom]).tolist() for geom in pair.geoms)
         every = (GeomPair(model, geoms) for geoms in itertools.product(ours, theirs))
-        self.pairs = [copied for copied in every if makes(copied)]
-        self.geoms = np.reshape([copied.geoms for copied in self.pairs], (-1, 2)).T
+        self.pairs = [each for each in every if makes(each)]
+        self.geoms = np.reshape([each.geoms for each in self.pairs], (-1, 2)).T
         self._landed = np.full((len(self.pairs), 7), np.nan)
 
     def landed(self, chosen: Integers) -> tuple[Array, Array, Array]:

@@ -189,12 +189,12 @@ class FrictionParameters(NamedTuple):
         return self._replace(solreffriction=(-1e-30, -impedance * rate), impratio=impratio)
 
 
-def unused(friction: object, found: FrictionParameters) -> Iterator[str]:
+def unused(friction: object, parameters: FrictionParameters) -> Iterator[str]:
     """A sentence on torsional and rolling friction of the request that the condim of the model leaves out."""
-    if is_iterable(friction) and any(found.friction[max(2, found.condim - 1) :]):
+    if is_iterable(friction) and any(parameters.friction[max(2, parameters.condim - 1) :]):
         yield (
-            f"friction = {tuple(f'{mu:g}' for mu in found.friction)} has torsional or rolling friction that condim "
-            f"{found.condim} leaves out; give the geoms condim 4 for torsional, 6 for both"
+            f"friction = {tuple(f'{mu:g}' for mu in parameters.friction)} has torsional or rolling friction that "
+            f"condim {parameters.condim} leaves out; give the geoms condim 4 for torsional, 6 for both"
         )
 
 

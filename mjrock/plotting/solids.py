@@ -204,8 +204,8 @@ class Solids:
         """
         low, high = self.extent()
         box = np.stack(np.meshgrid(*np.transpose([low, high]), indexing="ij"), axis=-1).reshape(-1, 3)
-        frames = [] if self.limits is not None else self._some
-        corner_sets = [np.clip(self.corners(frame), low, high) for frame in frames] or [box]
+        clipped = (np.clip(self.corners(frame), low, high) for frame in self._some)
+        corner_sets = [box] if self.limits is not None else list(clipped)
         return ends_of(np.array([ends_of(corners.reshape(-1, 3) @ self.across.T) for corners in corner_sets]))
 
     @property

@@ -124,7 +124,7 @@ class Listing(NamedTuple):
     """The blocks or the joints of masonry, or another table of its inputs.
 
     Args:
-        key: one of `HEADS`.
+        key: one of `COLUMN_KEYS`.
         heading: in words.
         columns: what stands above each.
         rows: a row for each.
@@ -306,7 +306,7 @@ def value_range(values: ArrayLike, unit: str, words: Words, digits: int = GIVEN)
     if math.isinf(low):
         return words("sticks")
     ends = [words.quantity(value, unit, digits) for value in (low, high)]
-    return ends[0] if low == high else words("range", low=ends[0], high=ends[1])
+    return ends[0] if ends[0] == ends[1] else words("range", low=ends[0], high=ends[1])
 
 
 def listings(subject: Subject, words: Words, written: Callable[[float], str]) -> list[Listing]:

@@ -329,21 +329,21 @@ def runs_section(parts: Sequence[Part], words: Words) -> list[Markup]:
 
 def pictures_of_runs(part: Part, words: Words) -> list[Markup]:
     """The runs of a wall or masonry as pictures."""
-    drawn_content, runs, mechanisms = part.content, part.runs, part.mechanisms
-    limits, limit = {}, drawn_content.limit_displacement()
+    part_content, runs, mechanisms = part.content, part.runs, part.mechanisms
+    limits, limit = {}, part_content.limit_displacement()
     if limit is not None:
         limits[words("limit_d_0")] = limit
         for check in (check for mechanism in mechanisms for check in mechanism.dynamic):
             limits[words("limit_of_mean", state=check.limit_state)] = check.capacity
     sentences = content.solver_sentences([run.response for run in runs], words)
     pieces = [element("p", text) for text in sentences]
-    figures = pictures.strips(runs, list(limits.items()), words(f"beyond_{drawn_content.KIND}"), words)
-    pieces += [picture(figure, words(f"strip_{drawn_content.KIND}"), words) for figure in figures]
-    figures = pictures.histories(runs, [drawn_content.displacement(run.response) for run in runs], limit, words)
+    figures = pictures.strips(runs, list(limits.items()), words(f"beyond_{part_content.KIND}"), words)
+    pieces += [picture(figure, words(f"strip_{part_content.KIND}"), words) for figure in figures]
+    figures = pictures.histories(runs, [part_content.displacement(run.response) for run in runs], limit, words)
     count = len({run.record for run in runs})
     caption = words("histories_caption", count=min(count, pictures.MOST_PANELS), of=count)
     pieces += [picture(figure, caption, words) for figure in figures]
-    end_figure = drawn_content.end_drawing(runs, words)
+    end_figure = part_content.end_drawing(runs, words)
     return pieces if end_figure is None else [*pieces, picture(end_figure, words("ends_caption"), words)]
 
 
@@ -456,12 +456,14 @@ def contact_groups(
     cases = {run.variant: run.response.case for run in runs}
     e_of = dict(e) if isinstance(e, Mapping) else {"": e}
     contacts_of = dict(contacts) if isinstance(contacts, Mapping) else {"": contacts}
-    for name, kind, by_variant_name in (("e", Restitution, e_of), ("contacts", Contacts, contacts_of)):
-        for variant, value in by_variant_name.items():
+    for name, kind, value_of in (("e", Restitution, e_of), ("contacts", Contacts, contacts_of)):
+        for variant, value in value_of.items():
             require_kind(f"{name}[{variant!r}]" if variant else name, value, kind, type(None))
             cases.get(variant, case_of(case)).require_own_joints(value)
-    rows = {name: inputs.contact_inputs(e_of.get(name), contacts_of.get(name), words) for name in (*e_of, *contacts_of)}
-    return [inputs.InputGroup(variant, contact_rows) for variant, contact_rows in rows.items()]
+    return [
+        inputs.InputGroup(variant, inputs.contact_inputs(e_of.get(variant), contacts_of.get(variant), words))
+        for variant in dict.fromkeys((*e_of, *contacts_of))
+    ]
 
 
 class InputTable(NamedTuple):
@@ -495,10 +497,12 @@ def input_table_parts(input_table: InputTable, words: Words) -> list[Markup]:
     return [heading, table(listing.columns, listing.rows, kind="runs")]
 
 
-def input_section(given: Mapping[str, list[inputs.InputGroup]], bases: Mapping[str, str], words: Words) -> list[Markup]:
+def input_section(
+    input_groups: Mapping[str, list[inputs.InputGroup]], bases: Mapping[str, str], words: Words
+) -> list[Markup]:
     """The inputs and what they rest on."""
     pieces = [element("h2", words("inputs"))]
-    for heading, groups in given.items():
+    for heading, groups in input_groups.items():
         for columns in inputs.side_by_side([group for group in groups if group.rows]):
             cells = []
             for row in columns.rows:
@@ -549,18 +553,18 @@ def names_by_record(runs: Sequence[Run], words: Words) -> dict[str, str]:
     return dict(zip(own_names, record_names(motions, words), strict=True))
 
 
-def run_table(subject: Content, runs: Sequence[Run], names: Mapping[str, str], words: Words) -> Markup:
+def run_table(part_content: Content, runs: Sequence[Run], names: Mapping[str, str], words: Words) -> Markup:
     """The table of the runs of a wall or masonry, with what their records are called."""
     grounds = [run.response.case.grounds for run in runs]
     directions = [name for name in ("vertical", "transverse") if any(name in ground for ground in grounds)]
     variants, ties = any(run.variant for run in runs), any(run.response.ties for run in runs)
-    columns = ["variant"] * variants + ["run", *directions, "polarity", *subject.COLUMNS]
+    columns = ["variant"] * variants + ["run", *directions, "polarity", *part_content.COLUMNS]
     columns += ["force", "drawn", "broke"] * ties
     rows = list[list[str]]()
     for run, ground in zip(runs, grounds, strict=True):
         others = [names[ground[name].name.removesuffix(REVERSED)] if name in ground else DASH for name in directions]
         cells = [run.variant] * variants + [run.label, *others, MINUS if run.is_reversed else "+"]
-        cells += subject.result_cells(run.response, words)
+        cells += part_content.result_cells(run.response, words)
         rows.append([*cells, *(content.tie_cells(run.response, words) if ties else [])])
     heads = [words(f"run_{key}") for key in columns]
     left = ("variant", "run", *directions, "polarity", "outcome", "fallen")

@@ -296,8 +296,8 @@ def design_results(design: Design, words: Words) -> list[Markup]:
     """Each value that was tried with what governs it, and the result in a sentence."""
     heads, *cells = design_rows(design, words)
     rows = list[list[str]]()
-    for trial, (label, ratio, holds, *governing_cells) in zip(design.trials, cells, strict=True):
-        verdict = holds if trial.governs is None else element("td", holds, kind="holds" if trial.holds else "fails")
+    for trial, (label, ratio, word, *governing_cells) in zip(design.trials, cells, strict=True):
+        verdict = word if trial.governs is None else element("td", word, kind="holds" if trial.holds else "fails")
         rows.append([element("td", label, kind="short"), ratio, verdict, *governing_cells])
     parts = [table(heads, rows, right=(1,)), element("p", design_sentence(design, words))]
     if design.chosen is None:
@@ -307,9 +307,9 @@ def design_results(design: Design, words: Words) -> list[Markup]:
     return [*parts, proposed, verdict_table(required_checks(checks, ""), words)]
 
 
-def condition_text(found: Condition, words: Words) -> str:
+def condition_text(condition: Condition, words: Words) -> str:
     """A condition of a design in words, with its mechanism where it has a name."""
-    return ": ".join(filter(None, (found.mechanism, _check_and_state(found.verdict, words))))
+    return ": ".join(filter(None, (condition.mechanism, _check_and_state(condition.verdict, words))))
 
 
 def design_sentence(design: Design, words: Words) -> str:
@@ -363,10 +363,10 @@ def kinematic_limits(mechanisms: Sequence[Mechanism], words: Words) -> list[str]
 
 def kinematic_steps(mechanisms: Sequence[Mechanism], words: Words) -> list[Markup]:
     """The steps of the kinematic checks, a column a mechanism."""
-    checks_by_name = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
+    named_checks = [(mechanism.name, mechanism.kinematic) for mechanism in mechanisms if mechanism.kinematic]
     tables = []
-    for code in dict.fromkeys(check.code.name for _, check in checks_by_name):
-        of_code = [(name, check) for name, check in checks_by_name if check.code.name == code]
+    for code in dict.fromkeys(check.code.name for _, check in named_checks):
+        of_code = [(name, check) for name, check in named_checks if check.code.name == code]
         for abreast in (of_code[start : start + COLUMNS_ABREAST] for start in range(0, len(of_code), COLUMNS_ABREAST)):
             checks = [check for _, check in abreast]
             rows = [_step_row(step, checks, words) for step in _merged_steps(checks)]

@@ -2,14 +2,30 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 
 from ..compiled import compiled
 from ..quantities import Array, Integers
 
-Springs = tuple[Array, Array, Array, Integers | slice]
-"""Springs of some pairs, see `PairPattern.sprung`."""
+
+class Springs(NamedTuple):
+    """Springs of some pairs.
+
+    Args:
+        pushed: rates of the lengths along which they push, for unit velocities of the two bodies, shape (m, 2, nv).
+        stretched: likewise of the lengths that they are stretched by. Those of a spring are the same, unless its force
+            depends on another length.
+        stiffness: shape (m,) [N/m].
+        pairs: which pairs they are.
+    """
+
+    pushed: Array
+    stretched: Array
+    stiffness: Array
+    pairs: Integers | slice
 
 
 class PairPattern:
@@ -24,20 +40,20 @@ class PairPattern:
     """
 
     def __init__(self, bodies: Integers, nv: int, count: int) -> None:
-        every, own = np.arange(nv), np.arange(count) * (count + 1)
+        unknowns, on_diagonal = np.arange(nv), np.arange(count) * (count + 1)
         self.count = nv * count
-        self.unknown = np.where(bodies[:, :, None] < 0, self.count, nv * bodies[:, :, None] + every)
+        self.unknown = np.where(bodies[:, :, None] < 0, self.count, nv * bodies[:, :, None] + unknowns)
         there = (bodies[:, :, None] >= 0) & (bodies[:, None] >= 0)
         blocks = np.where(there, bodies[:, :, None] + count * bodies[:, None], 0)
-        filled = np.unique(np.append(blocks[there], own))
+        filled = np.unique(np.append(blocks[there], on_diagonal))
         column, row = np.divmod(filled, count)
         heights = nv * np.bincount(column, minlength=count)
         self.indptr = np.append(0, np.cumsum(np.repeat(heights, nv))).astype(np.int32)
         first = self.indptr[nv * column] + nv * (np.arange(len(filled)) - np.searchsorted(column, column))
-        places = first[:, None, None] + heights[column, None, None] * every[:, None] + every
+        places = first[:, None, None] + heights[column, None, None] * unknowns[:, None] + unknowns
         self.indices = np.empty(self.indptr[-1], dtype=np.int32)
-        self.indices[places] = (nv * row)[:, None, None] + every
-        self.diagonal = places[np.searchsorted(filled, own)][:, every, every].ravel()
+        self.indices[places] = (nv * row)[:, None, None] + unknowns
+        self.diagonal = places[np.searchsorted(filled, on_diagonal)][:, unknowns, unknowns].ravel()
         number = np.searchsorted(filled, blocks)
         self.first, self.height = np.where(there, first[number], -1), heights[column[number]]
 
@@ -45,10 +61,12 @@ class PairPattern:
         """A stiffness as a matrix."""
         return csc_array((entries, self.indices, self.indptr), shape=(self.count, self.count))
 
-    def taken(self, matrix: csr_array) -> Array:
-        """The stiffness that is this matrix."""
+    def entries_of(self, matrix: csr_array) -> Array:
+        """A matrix as a stiffness. All of its entries are among those of the pattern."""
         entries = np.zeros(len(self.indices))
-        _take(matrix.data, matrix.indices, matrix.indptr, self.indices, self.indptr[:-1].astype(np.int64), entries)
+        _copy_entries(
+            matrix.data, matrix.indices, matrix.indptr, self.indices, self.indptr[:-1].astype(np.int64), entries
+        )
         return entries
 
     def forces(self, rates: Array, along: Array) -> Array:
@@ -57,12 +75,11 @@ class PairPattern:
         unknown, force = self.unknown[: len(along)].ravel(), (rates * along[:, None, None]).ravel()
         return np.asarray(np.bincount(unknown, force, self.count + 1)[:-1], dtype=float)
 
-    def sprung(self, *terms: Springs) -> Array:
-        """The stiffness of springs of some pairs: rates of the lengths along which they push, of those that they are
-        stretched by, both of the shape (m, 2, nv), their stiffness [N/m], shape (m,), and which pairs they are."""
+    def stiffness_of(self, *groups: Springs) -> Array:
+        """The stiffness of some groups of springs, added in their order."""
         entries = np.zeros(len(self.indices))
-        for pushed, stretched, springs, pairs in terms:
-            _add_springs(pushed, stretched, springs, self.first[pairs], self.height[pairs], entries)
+        for pushed, stretched, stiffness, pairs in groups:
+            _add_springs(pushed, stretched, stiffness, self.first[pairs], self.height[pairs], entries)
         return entries
 
 
@@ -70,6 +87,7 @@ class PairPattern:
 def _add_springs(
     pushed: Array, stretched: Array, springs: Array, first: Integers, height: Integers, entries: Array
 ) -> None:
+    """Add springs to a stiffness, from where the block of each pair of bodies begins, and the height of its column."""
     nv = pushed.shape[2]
     for i in range(len(springs)):
         for row in range(2):
@@ -81,9 +99,10 @@ def _add_springs(
 
 
 @compiled
-def _take(
+def _copy_entries(
     values: Array, columns: Integers, begins: Integers, rows: Integers, reached: Integers, entries: Array
 ) -> None:
+    """Copy a matrix by rows into entries by columns. `reached` is the entry that each column has reached."""
     for row in range(len(begins) - 1):
         for i in range(begins[row], begins[row + 1]):
             column = columns[i]

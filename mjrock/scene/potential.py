@@ -290,8 +290,8 @@ class Potential:
     def _bodies(self) -> Integers:
         """The two bodies of each contact and then of each tie, shape (m + t, 2)."""
         places, links = self.structure.places, self.structure.ties.links
-        own_springs = np.concatenate([places.body, links.body]).astype(np.int64)
-        return np.column_stack([own_springs, np.concatenate([places.face_body, links.anchor_body]).astype(np.int64)])
+        bodies = np.concatenate([places.body, links.body]).astype(np.int64)
+        return np.column_stack([bodies, np.concatenate([places.face_body, links.anchor_body]).astype(np.int64)])
 
     def load(self, pose: Array) -> Array:
         """Generalised force of the weight and of the constant forces, shape (n nv,)."""

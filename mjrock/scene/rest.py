@@ -391,7 +391,7 @@ def stiffness_at(potential: Potential, search: Search, trial: Trial) -> Array:
     places, slipping, m = potential.structure.places, trial.friction.slipping, len(search.shear)
     # open contacts have next to none: more of it would hide that open joints let go of a structure that stands on few
     springs = np.where(trial.closed, trial.springs, LEAST_LOOSE * trial.springs)
-    stiffness = normal_stiffness(potential, trial, springs) + potential.pattern.taken(curvature(potential, trial))
+    stiffness = normal_stiffness(potential, trial, springs) + potential.pattern.entries_of(curvature(potential, trial))
     stiffness += shear_stiffness(trial.friction, 0.0)
     if not slipping.any():
         return stiffness
@@ -399,12 +399,12 @@ def stiffness_at(potential: Potential, search: Search, trial: Trial) -> Array:
     rises = np.where(pressed, shear_limit(places.law, trial.springs[:m])[slipping], 0.0)  # with depth [N/m]
     lengths = rises[:, None, None] * trial.rates[:m][slipping]
     which, one = np.flatnonzero(slipping), np.ones(len(rises))
-    return stiffness + potential.pattern.sprung((trial.friction.along(slipping), lengths, one, which))
+    return stiffness + potential.pattern.stiffness_of(Springs(trial.friction.along(slipping), lengths, one, which))
 
 
 def normal_stiffness(potential: Potential, trial: Trial, springs: Array) -> Array:
     """Stiffness of springs of contacts and ties [N/m], shape (m + t,), entries of the pattern."""
-    return potential.pattern.sprung((trial.rates, trial.rates, springs, slice(None)))
+    return potential.pattern.stiffness_of(Springs(trial.rates, trial.rates, springs, slice(None)))
 
 
 def curvature(potential: Potential, trial: Trial) -> csr_array:
@@ -481,11 +481,12 @@ def friction_at(potential: Potential, pose: Array, sliders: Sliders) -> PointFri
 
 def shear_stiffness(friction: PointFriction, share: float) -> Array:
     """Stiffness of the points along their faces, entries of the pattern. Along its slip a point has a share of it."""
-    terms: list[Springs] = [(rates, rates, friction.stiffness, slice(len(rates))) for rates in friction.rates]
+    groups = [Springs(rates, rates, friction.stiffness, slice(len(rates))) for rates in friction.rates]
     if (slipping := friction.slipping).any():
         along = friction.along(slipping)
-        terms.append((along, along, (share - 1) * friction.stiffness[slipping], np.flatnonzero(slipping)))
-    return friction.pattern.sprung(*terms)
+        less = (share - 1) * friction.stiffness[slipping]
+        groups.append(Springs(along, along, less, np.flatnonzero(slipping)))
+    return friction.pattern.stiffness_of(*groups)
 
 
 def falling_direction(potential: Potential, search: Search, trial: Trial) -> Array | None:
@@ -498,7 +499,7 @@ def falling_direction(potential: Potential, search: Search, trial: Trial) -> Arr
     geometric = curvature(potential, trial)
     stiffness = normal_stiffness(potential, trial, np.where(presses, trial.springs, 0.0))
     most = float(abs(geometric).sum(axis=1).max())  # that the forces take from the stiffness
-    total = stiffness + shear_stiffness(trial.friction, 1.0) + potential.pattern.taken(geometric)
+    total = stiffness + shear_stiffness(trial.friction, 1.0) + potential.pattern.entries_of(geometric)
     matrix = potential.pattern.matrix(total)
     if is_clearly_stable(matrix):
         return None

@@ -174,6 +174,7 @@ def test_components_of_a_table_whose_times_are_in_milliseconds(tmp_path):
     (motion,) = mr.components_in(path, time_unit="ms")
     assert motion.dt == pytest.approx(0.01)
     assert motion == mr.GroundMotion.from_csv(path, time_unit="ms")
+    assert (motion,) == mr.components_in(path, time_unit="ms", columns=np.array([0, 1]))
     with pytest.raises(ValueError, match="time_unit = 'h' is not one of s, ms"):
         mr.components_in(path, time_unit="h")
 

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csr_array
 
-from mjrock.scene.pattern import PairPattern
+from mjrock.scene.pattern import PairPattern, Springs
 
 BODIES = np.array([[2, 0], [0, -1], [0, 2], [-1, 1], [2, 0]])
 """Pairs of four bodies: either is first, the other may be fixed, and the last body has none."""
@@ -24,8 +24,8 @@ def test_stiffness_and_forces_are_those_of_full_matrices():
     pattern, random = PairPattern(BODIES, NV, COUNT), np.random.default_rng(0)
     pushed, stretched = random.random((2, 5, 2, NV))
     springs, some = random.random(5), np.array([0, 3])
-    of_some = pushed[some], stretched[some], springs[:2], some
-    found = pattern.sprung((pushed, stretched, springs, slice(None)), of_some)
+    of_some = Springs(pushed[some], stretched[some], springs[:2], some)
+    found = pattern.stiffness_of(Springs(pushed, stretched, springs, slice(None)), of_some)
     expected = full(pushed).T @ np.diag(springs) @ full(stretched)
     expected += full(pushed)[some].T @ np.diag(springs[:2]) @ full(stretched)[some]
     np.testing.assert_allclose(pattern.matrix(found).toarray(), expected, rtol=1e-12)
@@ -37,4 +37,4 @@ def test_a_matrix_is_taken_whichever_of_the_entries_it_has():
     pattern = PairPattern(BODIES, NV, COUNT)
     whole = pattern.matrix(np.arange(1.0, 1 + len(pattern.indices))).toarray()
     whole[::2] = 0.0
-    np.testing.assert_array_equal(pattern.matrix(pattern.taken(csr_array(whole))).toarray(), whole)
+    np.testing.assert_array_equal(pattern.matrix(pattern.entries_of(csr_array(whole))).toarray(), whole)

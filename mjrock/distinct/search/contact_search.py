@@ -137,7 +137,7 @@ class ContactSearch:
         """
         fresh, names = copy(self), {name: i for i, name in enumerate(supports)}
         fresh.blocks = self.blocks._replace(support=np.array([names.get(name, -1) for name in self.names]))
-        fresh.finder, fresh.state = self.finder.pending(), self._no_contacts()
+        fresh.finder, fresh.state = self.finder.with_own_workspace(), self._no_contacts()
         fresh.law = self.law._replace(known=copy(self.law.known))
         fresh.motion, fresh.joints = Motion.initial(self.limits.start), JointState.intact(*self.joints[:4])
         return fresh
@@ -152,10 +152,10 @@ class ContactSearch:
         blocks of a pair may. One that is not found is farther than the sum of both sizes."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
         found = self.finder.places_near(start, self.sizes, every, jointed)
-        pending = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
+        separate = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
         limits = TOWARDS_OTHERS * self.sizes
         for block in (found.face, found.other):
-            allowance = np.where(pending, TOWARDS_OTHERS * found.gap, VALID_APPROACH * self.sizes[block])
+            allowance = np.where(separate, TOWARDS_OTHERS * found.gap, VALID_APPROACH * self.sizes[block])
             np.minimum.at(limits, block, allowance)
         return np.asarray(np.maximum(limits, NEAR * self.sizes))
 

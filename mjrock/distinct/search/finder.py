@@ -134,7 +134,7 @@ class Finder:
         most = int(np.diff([*self.solids.first, *self.solids.begin]).max())
         self._work = Workspace(rows(PLACE, 256), np.empty((4 * most + 4, 3)))
 
-    def pending(self) -> Finder:
+    def with_own_workspace(self) -> Finder:
         """A copy with work arrays of its own: runs in two threads must not share them."""
         fresh = copy(self)
         fresh._work = Workspace._make(part.copy() for part in self._work)

@@ -545,13 +545,14 @@ def _traces_of(table: RecordTable, options: TableOptions, scale: float) -> list[
         )
     if options.skip is None:
         table, stated = _without_header(table, dt, stated)
-    timed = options.columns != ROWS and table.width > 1 and _is_grid(scale * table.column(0), table.decimals, scale)
+    rows_requested = isinstance(options.columns, str) and options.columns == ROWS
+    timed = not rows_requested and table.width > 1 and _is_grid(scale * table.column(0), table.decimals, scale)
     if stated and not FINEST <= stated.value <= COARSEST:
         stated = None
     if stated:
         _agree("dt, which was given,", dt, stated)
         dt = stated.value if dt is None and not timed else dt
-    in_rows = options.columns == ROWS or (options.columns is None and dt is not None and not timed and _in_rows(table))
+    in_rows = rows_requested or (options.columns is None and dt is not None and not timed and _in_rows(table))
     if in_rows:
         columns, dt = _samples_in_rows(table, dt, scale)
     else:
