@@ -1,13 +1,11 @@
 import contextlib
 import gc
-import hashlib
 import os
 import signal
 from collections.abc import Generator
 from typing import Any
 
 import pytest
-from matplotlib.figure import Figure
 
 import mjrock as mr
 from mjrock import machine
@@ -50,34 +48,11 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
-def content(figure: Figure) -> bytes:
-    """A digest of what stands in a figure, the same for two that look alike."""
-    found = hashlib.sha256()
-    for ax in figure.axes:
-        for text in (*ax.texts, ax.title, ax.xaxis.label, ax.yaxis.label):
-            found.update(f"{text.get_position()} {text.get_text()}".encode())
-        paths = [path for one in ax.collections for path in one.get_paths()]
-        paths += [one.get_path() for one in (*ax.lines, *ax.patches)]
-        for path in paths:
-            found.update(path.vertices.tobytes())
-    return found.digest()
-
-
 @pytest.fixture(scope="session", autouse=True)
-def _pictures_of_reports(request: pytest.FixtureRequest) -> Generator[None, None, None]:
-    """Every day a picture of a report is made, and painted only where a test sets its dots: no other test looks at it.
-    Slow tests paint all, with a fourth of the dots."""
-    dots, save, every_day = markup.DOTS_PER_INCH / 4, Figure.savefig, "not slow" in request.config.option.markexpr
-
-    def saved(figure: Figure, file: Any, *given: Any, **options: Any) -> None:
-        if every_day and options.get("dpi") == dots:
-            file.write(content(figure))
-        else:
-            save(figure, file, *given, **options)
-
+def _coarse_pictures() -> Generator[None, None, None]:
+    """Pictures of reports are drawn and laid out as ever, with a fourth of the dots."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(markup, "DOTS_PER_INCH", dots)
-        patch.setattr(Figure, "savefig", saved)
+        patch.setattr(markup, "DOTS_PER_INCH", markup.DOTS_PER_INCH / 4)
         yield
 
 

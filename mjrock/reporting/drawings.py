@@ -40,7 +40,7 @@ def drawing_of(problem: Subject, words: Words, static_answers: Sequence[StaticAn
     Args:
         problem: a case, a limit curve, what bears a load, or one of `OTHERS`.
         words: of the report.
-        borne: of masonry, results whose loads are drawn.
+        static_answers: of masonry, results whose loads are drawn.
     """
     if not isinstance(problem, OTHERS):
         return content_of(problem).rest_drawing(words, static_answers)

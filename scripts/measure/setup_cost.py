@@ -1,10 +1,9 @@
 """What set-up costs by number of blocks: processor time of its parts, memory, and a search for contacts.
 
-Walls in running bond, and façades in space with return walls, each in a process of its own, or with `--quick` all in
-this one. The parts are the blocks with their joints, their contact lines, the lowest frequency for
-stiffness-proportional damping, the pose of rest, and what explicit steps need beyond. A search finds the contacts of
-all blocks that have no joint. Prints the table with the estimate of memory by which masonry is refused, and writes
-setup_cost.txt and .csv.
+Walls in running bond, and façades in space with return walls, each in a process of its own. The parts are the blocks
+with their joints, their contact lines, the lowest frequency for stiffness-proportional damping, the pose of rest, and
+what explicit steps need beyond. A search finds the contacts of all blocks that have no joint. Prints the table with
+the estimate of memory by which masonry is refused, and writes setup_cost.txt and .csv.
 """
 
 from __future__ import annotations
@@ -83,13 +82,6 @@ def measured(kind: str, blocks: int) -> list[object]:
     ]
 
 
-def measured_alone(kind: str, blocks: int) -> list[object]:
-    """A row of the table, from a process of its own."""
-    command = [sys.executable, "-m", "scripts.measure.setup_cost", "--one", kind, str(blocks)]
-    text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    return list(json.loads(text))
-
-
 def peak() -> float:
     """The most memory that this process has had [MB], zero where the system does not say."""
     try:
@@ -112,10 +104,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     out = cli.folder(args.out)
     chosen = {"façade": tuple(args.facade)} if args.facade else BLOCKS
     scenes = [(kind, blocks) for kind, sizes in chosen.items() for blocks in ((30,) if args.quick else sizes)]
+    command = [sys.executable, "-m", "scripts.measure.setup_cost", "--one"]
     rows = []
     for kind, blocks in tqdm(scenes, disable=None, leave=False):
-        found = measured(kind, blocks) if args.quick else measured_alone(kind, blocks)
-        rows.append([f"{value:.3g}" if isinstance(value, float) else value for value in found])
+        text = subprocess.run([*command, kind, str(blocks)], check=True, capture_output=True, text=True).stdout
+        rows.append([f"{value:.3g}" if isinstance(value, float) else value for value in json.loads(text)])
     cli.report(out / "setup_cost", cli.table(HEADER, rows), HEADER, rows)
 
 

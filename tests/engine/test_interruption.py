@@ -5,6 +5,7 @@ import sys
 
 import numba
 import pytest
+from everyday import slow
 
 import mjrock as mr
 from mjrock.engine import loop
@@ -37,8 +38,9 @@ def digest(answer):
 
 
 wanted, interrupted = digest(run(1.0)), 0
-for trial in range(5):
-    after = 0.02 + 0.026 * trial
+trials = int(sys.argv[2])
+for trial in range(trials):
+    after = 0.02 + 0.13 * trial / trials
     timer = threading.Timer(after, lambda: os.kill(os.getpid(), signal.SIGINT))
     timer.start()
     try:
@@ -52,11 +54,11 @@ print(interrupted)
 
 
 @pytest.mark.parametrize(
-    "solver", ["wall", *(pytest.param(name, marks=pytest.mark.slow) for name in ("fixed", "theory", "arch", "stack"))]
+    ("solver", "count"), [("wall", "5"), *(slow((name, "10")) for name in ("wall", "fixed", "theory", "arch", "stack"))]
 )
-def test_five_interruptions_end_the_run_and_nothing_else(solver):
-    run = subprocess.run([sys.executable, "-c", SCRIPT, solver], capture_output=True, text=True, check=False)
-    assert (run.returncode, run.stdout.strip()) == (0, "5"), run.stderr[-2000:]
+def test_interruptions_end_the_run_and_nothing_else(solver, count):
+    run = subprocess.run([sys.executable, "-c", SCRIPT, solver, count], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout.strip()) == (0, count), run.stderr[-2000:]
 
 
 def test_compiled_loops_return_plain_tuples():

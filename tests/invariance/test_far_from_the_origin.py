@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from everyday import slow
 
 import mjrock as mr
 from mjrock.distinct.search.finder import NONE, Finder
@@ -15,7 +16,7 @@ from mjrock.scene.masonry import scene_of_masonry
 SHAKEN = 1e-5
 """Displacements of the blocks [m]: neighbours across a corner then lie over each other by slivers as wide as that."""
 FAR = [(1 / 3, 0.0, 0.0), (1e3, 0.0, 0.0), (9e3, 1e3, 0.0)]
-OFTEN = [*(pytest.param(by, marks=pytest.mark.slow) for by in FAR[:-1]), pytest.param(FAR[-1])]
+OFTEN = [*(slow((by,)) for by in FAR[:-1]), FAR[-1]]
 """The farthest every day."""
 
 

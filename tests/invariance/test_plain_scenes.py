@@ -5,6 +5,7 @@ flat, so that the order of the blocks counts in arches and in walls of irregular
 """
 
 import pytest
+from everyday import slow
 
 from tests.invariance import invariances
 from tests.invariance.random_scenes import draw
@@ -32,7 +33,7 @@ SEEDS = (
 """Of masonry in the plane and in space, of the first sixty scenes from 70000 those that a plain model has."""
 
 
-@pytest.mark.parametrize("seed", [*EVERYDAY, *(pytest.param(seed, marks=pytest.mark.slow) for seed in SEEDS)])
+@pytest.mark.parametrize("seed", [*EVERYDAY, *map(slow, SEEDS)])
 @pytest.mark.filterwarnings("ignore")
 def test_a_plain_model_does_not_depend_on_how_it_is_put(seed):
     scene = draw(seed)

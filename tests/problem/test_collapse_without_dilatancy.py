@@ -117,8 +117,8 @@ def test_a_load_on_a_block_grows_in_place_of_the_inertia_or_beside_it():
         alone = mr.collapse_multiplier(stack, None, loads={"block_1": (top, 0.0)}, associated=associated)
         assert alone.multiplier == pytest.approx(2 * 0.2 / 1.2)
         assert not alone.direction.any()
-    turned = mr.collapse_multiplier(stack, None, loads={"block_1": (0, 0, 0.4 * top)})
-    assert turned.multiplier == pytest.approx(0.2 / 0.4)  # the upper block alone turns
+        turned = mr.collapse_multiplier(stack, None, loads={"block_1": (0, 0, 0.4 * top)}, associated=associated)
+        assert turned.multiplier == pytest.approx(0.2 / 0.4)  # the upper block alone turns
 
 
 def test_what_nothing_moves_has_an_infinite_multiplier():
@@ -155,18 +155,14 @@ def test_arguments_are_checked(arguments, complaint):
         mr.collapse_multiplier(stack, **arguments)
 
 
-def walls(*numbers):
-    return [number if number in numbers else pytest.param(number, marks=pytest.mark.slow) for number in study.WALLS]
-
-
-@pytest.mark.parametrize("number", walls(3))
+@pytest.mark.parametrize("number", among(study.WALLS, 3))
 def test_walls_of_ferris_and_tin_loi_with_associated_friction(number):
     collapse = mr.collapse_multiplier(study.wall(number))
     assert collapse.multiplier == pytest.approx(study.PUBLISHED[number][0], rel=0.005)
     assert state_error(collapse, study.FRICTION)[0] < STANDS
 
 
-@pytest.mark.parametrize("number", walls(1))
+@pytest.mark.parametrize("number", among(study.WALLS, 1))
 def test_walls_of_ferris_and_tin_loi_without_dilatancy(number):
     """On wall 5 the search finds a state below the published one, which is among the others within 1 %."""
     collapse = mr.collapse_multiplier(study.wall(number), associated=False)

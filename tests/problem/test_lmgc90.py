@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from everyday import slow
 
 import mjrock as mr
 
@@ -116,11 +117,12 @@ def test_what_is_refused(tmp_path, old, new, said):
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-def test_damaged_files_are_read_or_refused_with_their_path(tmp_path):
+@pytest.mark.parametrize("count", [60, slow(160)])
+def test_damaged_files_are_read_or_refused_with_their_path(tmp_path, count):
     folder, rng = datbox(tmp_path), np.random.default_rng(4)
     texts = {path: path.read_text() for path in sorted(folder.iterdir())}
     refused = 0
-    for i in range(60):
+    for i in range(count):
         path = list(texts)[i % len(texts)]
         text, at = texts[path], rng.integers(len(texts[path]), size=2)
         kinds = (text[: at[0]] + "#=-E"[i % 4] + text[at[0] + i % 3 :], text[: at[0]], text[: at[0]] + text[max(at) :])
@@ -131,4 +133,4 @@ def test_damaged_files_are_read_or_refused_with_their_path(tmp_path):
             refused += 1
             assert f"path = {folder}" in str(error), str(error)  # noqa: PT017
         path.write_text(text)
-    assert 8 < refused < 60
+    assert count / 8 < refused < count

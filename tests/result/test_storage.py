@@ -15,6 +15,7 @@ from functools import cache, cached_property
 import matplotlib
 import numpy as np
 import pytest
+from everyday import among, slow
 
 import mjrock as mr
 from mjrock.result.tree import NotKept, Reader
@@ -258,21 +259,21 @@ def test_the_file_explains_itself(path):
     assert case["masonry"]["bond"]["tension"] == BOND.tension
 
 
-def test_xarray_opens_it(path):
+@pytest.mark.parametrize("kind", among(["mortar", "shaken wall, MuJoCo", "in space"], "mortar", "in space"))
+def test_xarray_opens_it(path, kind):
     xarray = pytest.importorskip("xarray")
     pytest.importorskip("h5netcdf")
-    for kind in ("mortar", "in space"):
-        found = answer(kind)
-        made = found.to_xarray()
-        with xarray.open_dataset(found.save(path), engine="h5netcdf") as read:
-            assert set(made) <= set(read)
-            for name in made:
-                assert made[name].dims == read[name].dims
-                assert made[name].attrs == {key: read[name].attrs[key] for key in ("units", "description")}
-                np.testing.assert_array_equal(made[name].values, read[name].values)
-            assert made.attrs.items() <= read.attrs.items()
-            x = read.pose.sel(body=found.bodies[0], coordinate="x")
-            np.testing.assert_array_equal(x, found.pose[:, 0, 0])
+    found = answer(kind)
+    made = found.to_xarray()
+    with xarray.open_dataset(found.save(path), engine="h5netcdf") as read:
+        assert set(made) <= set(read)
+        for name in made:
+            assert made[name].dims == read[name].dims
+            assert made[name].attrs == {key: read[name].attrs[key] for key in ("units", "description")}
+            np.testing.assert_array_equal(made[name].values, read[name].values)
+        assert made.attrs.items() <= read.attrs.items()
+        x = read.pose.sel(body=found.bodies[0], coordinate="x")
+        np.testing.assert_array_equal(x, found.pose[:, 0, 0])
 
 
 @pytest.mark.parametrize("kind", ["wall, MuJoCo", "theory", "mortar", "in space"])
@@ -445,16 +446,19 @@ class TestRefused:
             file.attrs["project"] = "Amatrice"
         assert mr.load(path) == answer("theory")
 
-    @pytest.mark.parametrize("kind", ["theory", "mortar"])
-    def test_damaged_files(self, path, kind):
+    @pytest.mark.parametrize(
+        ("kind", "count"),
+        [("theory", 40), ("mortar", 40), slow(("theory", 60)), slow(("mortar", 60))],
+    )
+    def test_damaged_files(self, path, kind, count):
         """Cut, or with bytes that are others, they are refused, or what is read is right."""
         found = answer(kind)
         whole = found.save(path).read_bytes()
         random = np.random.default_rng(1)
         refused = 0
-        for i in range(40):
+        for i in range(count):
             torn = bytearray(whole)
-            if i < 10:
+            if i < count // 4:
                 torn = torn[: int(random.integers(len(whole)))]
             else:
                 torn[int(random.integers(len(whole) if i % 2 else 4096))] ^= 1 << int(random.integers(8))
@@ -465,7 +469,7 @@ class TestRefused:
                 refused += str(path) in str(error)
             else:
                 assert differences(read, found) == []
-        assert 20 < refused < 40
+        assert count / 2 < refused < count
 
     @pytest.mark.parametrize(
         "name", ["mjrock.examples.01_release.x", "mjrock.x", "os.system", "simulate", "mjrock.result.tree.Writer"]

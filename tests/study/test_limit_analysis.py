@@ -55,12 +55,11 @@ def test_constant_loads_thrusts_and_masses_stand_beside_the_force_that_grows(in_
     out = mr.Thrust(force=thrust, **at(in_space, 0.2, 1.5))
     top = mr.AddedMass(mass, **at(in_space, 0.15, 1.8), **offset(in_space, 0.15))
     held, turned = weight * lever, weight * 0.5 * HIGH
+    assert found() == pytest.approx(held / turned)
+    assert found(down) == pytest.approx((held + load * (THICK - 0.1)) / turned)
+    assert found(out) == pytest.approx((held - thrust * 1.5) / turned)
     added = mass * mr.GRAVITY
-    if associated:
-        assert found() == pytest.approx(held / turned)
-        assert found(down) == pytest.approx((held + load * (THICK - 0.1)) / turned)
-        assert found(out) == pytest.approx((held - thrust * 1.5) / turned)
-        assert found(top) == pytest.approx((held + added * (THICK - 0.15)) / (turned + added * 1.8))
+    assert found(top) == pytest.approx((held + added * (THICK - 0.15)) / (turned + added * 1.8))
     together = (held + load * (THICK - 0.1) - thrust * 1.5 + added * (THICK - 0.15)) / (turned + added * 1.8)
     assert found(down, out, top) == pytest.approx(together)
 

@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from everyday import slow
 
 import mjrock as mr
 from mjrock import plotting
@@ -70,8 +71,9 @@ def test_rows_of_masonry_say_whether_it_is_lost(tmp_path):
         mr.lost([{"outcome": "overturned"}])
 
 
-def test_a_capacity():
-    capacity = mr.Capacity(falls(4.0), tolerance=0.2, below=1)
+@pytest.mark.parametrize("tolerance", [0.2, slow(0.05)])
+def test_a_capacity(tolerance):
+    capacity = mr.Capacity(falls(4.0), tolerance=tolerance, below=1)
     row = capacity()
     assert row["solver"] == "explicit"
     assert capacity.scaled(row["capacity_scale"]).solve().fallen

@@ -13,23 +13,32 @@ import mjrock as mr
 from mjrock import plotting
 from mjrock.distinct.explicit import solve_explicit
 from mjrock.distinct.response import EnergyGainError
-from mjrock.study.loading.push import BLOWS_TO_END, ForceRun, Piece, warn_if_fast
+from mjrock.study.loading.push import BLOWS_TO_END, PIECES, ForceRun, Piece, warn_if_fast
 
 JACK = mr.Actuator("panel", (-B, 2 * H), 1, None, 1e8)
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_pieces():
-    """Pushes are made in fewer pieces than those of a user. Their points lie on the same curve."""
+FEW = 40
+"""Pieces of a push, fewer than those of a user. Their points lie on the same curve."""
+
+
+def pushed_in(pieces, *arguments, **options):
+    """A push in a number of pieces."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mjrock.study.loading.push.PIECES", 40)
-        yield
+        patch.setattr("mjrock.study.loading.push.PIECES", pieces)
+        return mr.push(*arguments, **options)
 
 
-@pytest.fixture(scope="module")
-def turned(few_pieces):
-    """A panel that an actuator turns to 0.4 of overturning."""
-    return mr.push(panel(0.9, k_n=1e10), JACK, 0.2)
+@pytest.fixture(autouse=True)
+def few_pieces(monkeypatch):
+    """Pushes of tests are made in few pieces."""
+    monkeypatch.setattr("mjrock.study.loading.push.PIECES", FEW)
+
+
+@pytest.fixture(scope="module", params=[FEW, slow(PIECES)])
+def turned(request):
+    """A panel that an actuator turns to 0.4 of overturning, in few pieces and in those of a user."""
+    return pushed_in(request.param, panel(0.9, k_n=1e10), JACK, 0.2)
 
 
 def rigid(moved):
@@ -106,14 +115,15 @@ def test_the_area_under_the_curve_of_an_actuator_is_the_energy_gained(turned):
     assert work_of(turned) == pytest.approx(turned.energy[-1], rel=0.005)
 
 
-@pytest.fixture(scope="module")
-def toppled(few_pieces):
-    """A panel that is pushed by a direction to 0.6 of overturning."""
-    return toppled_by(1)
+@pytest.fixture(scope="module", params=[(FEW, 0.4), slow(((PIECES, 0.2),))])
+def toppled(request):
+    """A panel that is pushed by a direction to 0.6 of overturning, and in the pieces of a user to 0.8."""
+    return toppled_by(1, *request.param)
 
 
-def toppled_by(way):
-    return mr.push(panel(2.0, k_n=1e10), way, np.hypot(B, H) * (np.sin(ALPHA) - np.sin(0.4 * ALPHA)))
+def toppled_by(way, pieces, left):
+    to = np.hypot(B, H) * (np.sin(ALPHA) - np.sin(left * ALPHA))
+    return pushed_in(pieces, panel(2.0, k_n=1e10), way, to)
 
 
 ALPHA = np.arctan(B / H)
@@ -138,8 +148,8 @@ def test_a_direction_finds_the_whole_curve_of_a_rigid_block(toppled):
 
 
 @pytest.mark.slow
-def test_a_push_against_x_is_the_mirror_of_one_along_x(toppled):
-    other = toppled_by(-1)
+def test_a_push_against_x_is_the_mirror_of_one_along_x():
+    toppled, other = (toppled_by(way, FEW, 0.4) for way in (1, -1))
     for name in ("displacement", "force"):
         np.testing.assert_allclose(getattr(toppled, name), getattr(other, name), rtol=1e-4, atol=1e-8)
 
@@ -241,9 +251,9 @@ def test_a_strip_between_floors_follows_its_rigid_curve_down_to_nothing():
 
 
 @pytest.fixture(scope="module")
-def in_the_plane(few_pieces):
+def in_the_plane():
     """The panel that is pushed by 0.1 m, in as many pieces as in space."""
-    return mr.push(panel(2.0, k_n=1e10), 1, 0.1)
+    return pushed_in(FEW, panel(2.0, k_n=1e10), 1, 0.1)
 
 
 @pytest.mark.slow
@@ -325,11 +335,12 @@ def test_blocks_that_give_way_do_not_run_on():
     assert np.diff(push.displacement).max() < 0.001
 
 
-def test_a_push_to_and_fro_loses_friction_each_way(monkeypatch):
-    monkeypatch.setattr("mjrock.study.loading.push.PIECES", 70)  # each turn loses a point
-    push = mr.push(panel(0.3), mr.Actuator("panel", (-B, 0.1), 1, None, 1e8), [0.01, -0.01])
+@pytest.mark.parametrize(("pieces", "turns"), [(70, (0.01, -0.01)), slow((PIECES, (0.01, -0.01, 0.005)))])
+def test_a_push_to_and_fro_loses_friction_each_way(pieces, turns):
+    """Each turn loses a point."""
+    push = pushed_in(pieces, panel(0.3), mr.Actuator("panel", (-B, 0.1), 1, None, 1e8), turns)
     work = float((0.5 * (push.force[1:] + push.force[:-1]) * np.diff(push.displacement)).sum())
-    assert work == pytest.approx(0.3 * WEIGHT * 0.03, rel=0.01)
+    assert work == pytest.approx(0.3 * WEIGHT * np.abs(np.diff((0.0, *turns))).sum(), rel=0.01)
     assert push.force.min() == pytest.approx(-0.3 * WEIGHT, rel=0.01)
 
 

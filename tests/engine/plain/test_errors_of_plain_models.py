@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from everyday import slow
 from masonry_blocks import box
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
@@ -60,8 +61,9 @@ def test_a_body_that_spins_in_flight():
     assert explicit[1] < 1e-12
 
 
+@pytest.mark.parametrize("share", [8, slow(4)])
 @pytest.mark.filterwarnings("ignore:contacts that slide")
-def test_a_run_in_two_parts_under_a_record():
+def test_a_run_in_two_parts_under_a_record(share):
     """Cut at a sample of the record: the end of the first part is a mean of velocities in time, at fixed steps."""
     blocks = [
         box(-6, 6, -1, 0, fixed=True),
@@ -70,7 +72,7 @@ def test_a_run_in_two_parts_under_a_record():
     ]
     masonry = mr.Masonry(blocks, joints=mr.Dry(k_n=1e9, friction=0.6, xi=0.05, frequency=60.0))
     record = mr.GroundMotion.synthetic(6.0, 1.0, seed=5)
-    half = len(record.accel) // 8
+    half = len(record.accel) // share
     case = mr.MasonryCase(masonry, 2 * half * record.dt, motion=record)
     later = mr.GroundMotion(record.accel[half:], record.dt, "rest")
     for name, solve, most in (

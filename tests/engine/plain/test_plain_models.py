@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
-from everyday import among
+from everyday import slow
 
 import mjrock as mr
 from scripts.measure.rebound_phase import Fall
@@ -18,10 +18,11 @@ def released(wall=WALL, **options):
     return mr.Case(wall, **{"theta0": 0.5 * wall.alpha, "duration": 1.2, "side_stop": True} | options)
 
 
-def test_the_law_carries_over_to_contacts_that_mujoco_finds():
+@pytest.mark.parametrize(("duration", "timestep"), [(1.0, 1e-4), slow((1.2, None))])
+def test_the_law_carries_over_to_contacts_that_mujoco_finds(duration, timestep):
     """The first rebound from the side stop within 1 % of `solve_compliant`, whose kinematics it does not share."""
-    case = released(duration=1.0)
-    plain = mr.simulate(case, LAW, timestep=1e-4, **PLAIN)
+    case = released(duration=duration)
+    plain = mr.simulate(case, LAW, timestep=timestep, **PLAIN)
     assert plain.restitution[0] == pytest.approx(mr.solve_compliant(case, LAW).restitution[0], rel=0.01)
     assert np.abs(plain.energy_residual).max() < 0.01 * plain.ledger.largest
 
@@ -76,11 +77,14 @@ EFFECTS = {
 }
 
 
-@pytest.mark.parametrize("name", among(EFFECTS, "load", "damper", "tie"))
-def test_effects_act_as_in_models_of_contact_points(name):
+@pytest.mark.parametrize(
+    ("name", "timestep"),
+    [*((name, 2e-4) for name in ("load", "damper", "tie")), *(slow((name, None)) for name in EFFECTS)],
+)
+def test_effects_act_as_in_models_of_contact_points(name, timestep):
     """At the same step: the rotation, and the whole ledger, to the first rebound."""
     case = released(effects=EFFECTS[name], duration=0.5)
-    plain = mr.simulate(case, LAW, timestep=2e-4, **PLAIN)
+    plain = mr.simulate(case, LAW, timestep=timestep, **PLAIN)
     points = mr.simulate(case, LAW, timestep=plain.stats["timestep"], output_step=1e-3, ledger=True)
     np.testing.assert_allclose(plain.theta, np.interp(plain.t, points.t, points.theta), atol=1e-3 * WALL.alpha)
     for part in ("ties", "dashpots"):
@@ -90,8 +94,9 @@ def test_effects_act_as_in_models_of_contact_points(name):
     assert np.abs(plain.energy_residual).max() < 0.01 * plain.ledger.largest
 
 
-def test_a_shaken_wall_moves_as_on_contact_points():
-    case = mr.Case(WALL, theta0=0.0, duration=0.9, motion=mr.GroundMotion.sine(-2.0, 0.8), side_stop=False)
+@pytest.mark.parametrize("duration", [0.9, slow(1.2)])
+def test_a_shaken_wall_moves_as_on_contact_points(duration):
+    case = mr.Case(WALL, theta0=0.0, duration=duration, motion=mr.GroundMotion.sine(-2.0, 0.8), side_stop=False)
     plain = mr.simulate(case, LAW, timestep=2e-4, **PLAIN)
     points = mr.simulate(case, LAW, ledger=True)
     late = np.interp(plain.t, points.t, points.theta)
@@ -99,11 +104,13 @@ def test_a_shaken_wall_moves_as_on_contact_points():
     assert plain.ledger.ground[-1] == pytest.approx(points.ledger.ground[-1], rel=0.01)
 
 
-def test_a_run_carries_on_from_its_end():
+@pytest.mark.parametrize(("duration", "first_duration"), [(0.2, 0.1), slow((0.4, 0.1))])
+def test_a_run_carries_on_from_its_end(duration, first_duration):
     """The leapfrog starts anew, so that the two agree to the second order of the step."""
-    whole = mr.simulate(released(duration=0.2), LAW, timestep=1e-4, collisions=True)
-    first = mr.simulate(released(duration=0.1), LAW, timestep=1e-4, collisions=True)
-    rest = mr.simulate(released(duration=0.1), LAW, timestep=1e-4, collisions=True, start=first.end)
+    whole = mr.simulate(released(duration=duration), LAW, timestep=1e-4, collisions=True)
+    first = mr.simulate(released(duration=first_duration), LAW, timestep=1e-4, collisions=True)
+    remaining = released(duration=duration - first_duration)
+    rest = mr.simulate(remaining, LAW, timestep=1e-4, collisions=True, start=first.end)
     assert rest.theta[-1] == pytest.approx(whole.theta[-1], abs=1e-5 * WALL.alpha)
 
 
