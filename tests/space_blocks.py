@@ -9,11 +9,12 @@ from mjrock.distinct.assembly import copied
 from mjrock.distinct.kinds.actuators import Actuators
 from mjrock.distinct.kinds.lists import KINDS, no_laws
 from mjrock.distinct.loop import Clock, advance
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, Samples, System
 from mjrock.distinct.thread import threads_of
 from mjrock.geometry.frames import SPACE
+from mjrock.rows import rows
 from mjrock.scene.course import Ground
 
 GROUND = mr.Polyhedron.box((20, 20, 1), (0, 0, -0.5), fixed=True, name="ground")

@@ -13,13 +13,14 @@ from ..problem.masonry.case import MasonryCase
 from ..problem.masonry.histories import Support
 from ..problem.masonry.laws.joint_law import Law
 from ..quantities import Array
+from ..rows import Rows, rows
 from ..scene.course import Ground
 from ..scene.scene import Scene
 from .contacts.faces import edges_of, margins
 from .contacts.touches import FIRST_OPENING
 from .kinds.lists import no_laws
 from .rotation import is_flat, set_rotations_and_spins
-from .rows import Rows, kinds, rows
+from .rows import kinds
 from .supports import moving
 from .system import System
 

@@ -11,11 +11,11 @@ import math
 from ..compiled import inlined
 from ..geometry.vectors import Vector, increase, moment, plus, put, read, scaled
 from ..quantities import Array
+from ..rows import Row
 from .contacts.faces import meeting, where_friction_rubs
 from .contacts.friction import as_vector, last_friction
 from .contacts.touches import was_open
 from .kinds.lists import lost_by_laws, with_laws
-from .rows import Row
 from .system import Samples, System
 
 

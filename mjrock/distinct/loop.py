@@ -26,6 +26,7 @@ from ..geometry.vectors import (
 )
 from ..problem.masonry.laws.joint_law import stored
 from ..quantities import GRAVITY, Array
+from ..rows import Rows
 from ..scene.course import Ground, mean_acceleration
 from .contacts.contact import settle_touches
 from .contacts.friction import book_rubbing, sheared, stick
@@ -45,7 +46,6 @@ from .rotation import (
     update_rotation,
     write_rotation,
 )
-from .rows import Rows
 from .spans import bodies_of_span, list_touched, press_by_laws, press_spans, sum_up
 from .supports import move_supports
 from .system import Books, Samples, System

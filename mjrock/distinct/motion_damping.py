@@ -13,8 +13,8 @@ import math
 from ..compiled import inlined
 from ..geometry.vectors import Vector, dot, put, read, scaled
 from ..quantities import Array
+from ..rows import Row
 from .rotation import momentum_of
-from .rows import Row
 from .system import Books, System
 
 

@@ -17,11 +17,11 @@ from ..result.motion import SampledMotion, thinned
 from ..result.reading import ContactHistory, Reading
 from ..result.response import End, Response
 from ..result.ties import Plastic, plastic_of, ties_message
+from ..rows import Row, Rows
 from ..scene.scene import Scene
 from ..scene.time_step import ENERGY_GAIN
 from .kinds.link import Kind
 from .kinds.ties import Ties
-from .rows import Row, Rows
 from .setup import Setup
 from .system import ENERGY, Books, Samples, System
 from .time_integration import Integration

@@ -19,7 +19,7 @@ import numpy as np
 from ..compiled import by_type, inlined
 from ..geometry.vectors import Vector, dot, increase, moment, norm, plus, put, read, scaled, spun, times
 from ..quantities import Array
-from .rows import Row, Rows
+from ..rows import Row, Rows
 
 SPIN_PASSES = 3
 """Passes of the search for the angular velocity in the middle of a step. Each gains the order of h w."""

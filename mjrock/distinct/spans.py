@@ -8,8 +8,8 @@ from typing import Any
 
 from ..compiled import by_type, inlined, method
 from ..quantities import Array, Integers
+from ..rows import Row, Rows
 from .contacts.contact import press_lines
-from .rows import Row, Rows
 from .system import Books, System, Tables
 from .thread import Thread, add_pending_forces, wait
 

@@ -17,9 +17,9 @@ from ..linear import block_diagonal, rates_of, scaled_rows
 from ..problem.masonry.blocks.joints_in_space import tangent_axes
 from ..problem.masonry.laws.joint_law import largest_stiffness
 from ..quantities import Array
+from ..rows import Rows
 from ..scene.time_step import stable_step
 from .rotation import roots_of_masses
-from .rows import Rows
 from .system import System
 
 MANY_SPRINGS = 50_000

@@ -9,8 +9,9 @@ import numpy as np
 from ..geometry.frames import PLANE, SPACE
 from ..quantities import Array, Integers
 from ..result.forces import ForceCounts
+from ..rows import Rows, joined, numbers, row_type, rows
 from ..scene.course import Ground
-from .rows import DISSIPATED_BY_LAWS, Rows, joined, kinds, rows
+from .rows import DISSIPATED_BY_LAWS, kinds
 from .supports import Supports
 from .thread import Thread, pending_forces, spans_of, spans_of_bodies, threads_of
 
@@ -18,7 +19,7 @@ Tables = tuple[Any, ...]
 """Tables of kinds of links, or of laws of joints."""
 
 STATE_ENERGIES, WORK = ("kinetic", "potential", "elastic"), ("friction", "ground", "driven", *DISSIPATED_BY_LAWS)
-ENERGY = np.dtype([(name, float) for name in (*STATE_ENERGIES, *WORK)])
+ENERGY = row_type(numbers(*STATE_ENERGIES, *WORK))
 """Energy at a sample or a check, and the work since the start [J]: what friction has dissipated, what ground and
 supports and what actuators have put in, and what `rows.DISSIPATED_BY_LAWS` names."""
 

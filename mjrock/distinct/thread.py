@@ -21,7 +21,8 @@ import numpy as np
 from ..compiled import by_type, called, inlined
 from ..geometry.vectors import Vector, increase, minus, moment, put, read, scaled
 from ..quantities import Integers
-from .rows import Row, Rows, kinds, rows
+from ..rows import Row, Rows, rows
+from .rows import kinds
 
 LINES_TOGETHER, BODIES_TOGETHER = 512, 256
 """Lines and bodies of a span."""

@@ -18,8 +18,8 @@ from typing import Self
 from ..compiled import Loop
 from ..interrupts import interrupts_held_back
 from ..machine import cores
+from ..rows import Rows
 from .loop import Clock
-from .rows import Rows
 from .system import Books, Samples, System
 from .thread import Thread
 

@@ -13,12 +13,13 @@ import numpy as np
 from ..bars import Bar
 from ..compiled import for_types_of
 from ..quantities import warn_of
+from ..rows import unsound
 from ..scene.time_step import stepping_seconds
 from .kinds.own import OwnLaws
 from .kinds.own_links import OwnLinks
 from .loop import Clock, advance
 from .memory import Memory, remember
-from .rows import MAY_BE_INFINITE, unsound
+from .rows import MAY_BE_INFINITE
 from .search.contact_search import ContactSearch
 from .setup import Setup
 from .step_length import STEPS_AHEAD, TimeGrid

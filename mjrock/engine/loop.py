@@ -10,7 +10,7 @@ the memory of the engine.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ..compiled import compiled, inlined
 from ..geometry.frames import frames_of, take_frames
 from ..geometry.kinematics import snaps, stretch
 from ..quantities import ON_ITS_FACE, Array, Flags
+from ..rows import Row, Rows, flags, integers, numbers, row_type, rows
 from ..scene.course import Ground, mean_acceleration, push_along
 from ..scene.masses import coupling
 from .memory import IMPRATIO, TIMESTEP, EngineArrays
@@ -178,45 +179,27 @@ class StepTimes(NamedTuple):
     previous: float
 
 
-class StepClock(NamedTuple):
-    """Where a run of fitted steps is.
+CLOCK = row_type(
+    [
+        *numbers("t"),  # time of the next pose [s]
+        *numbers("allowed"),  # length of step that the step control allows [s]
+        *numbers("previous"),  # length of the last step, zero at the release [s]
+        *numbers("energy"),  # twice the kinetic energy at the last touch [J], a measure of changes, see `Method.faster`
+        *integers("calm_steps"),  # how many steps in a row changed little
+        *integers("touches"),  # how many touches have been met
+        *integers("steps"),  # how many steps the last call of the loop has made
+        *flags("no_rate"),  # whether no rate of the acceleration is known: after a touch, and at the release
+        *flags("unpredictable"),  # whether the last step changed the velocity too much for it to predict the next
+        *flags("ended"),  # whether the run is over
+    ]
+)
+"""Where a run of fitted steps is."""
 
-    Args:
-        t: time of the next pose [s].
-        allowed: length of step that the step control allows [s].
-        previous: length of the last step, zero at the release [s].
-        energy: twice the kinetic energy at the last touch [J], by which changes are measured, see `Method.faster`.
-        calm_steps: how many steps in a row changed little.
-        no_rate: whether no rate of the acceleration is known: after a touch, and at the release.
-        unpredictable: whether the last step changed the velocity too much for it to predict the next.
-        touches: how many touches have been met.
-        ended: whether the run is over.
-    """
 
-    t: float
-    allowed: float
-    previous: float
-    energy: float
-    calm_steps: int
-    no_rate: bool
-    unpredictable: bool
-    touches: int
-    ended: bool
-
-    @classmethod
-    def started(cls, control: StepControl, energy: float) -> StepClock:
-        """At the release, with the energy of the release [J]."""
-        return cls(
-            t=0.0,
-            allowed=control.short,
-            previous=0.0,
-            energy=max(2 * energy, control.least_energy),
-            calm_steps=0,
-            no_rate=True,
-            unpredictable=False,
-            touches=0,
-            ended=False,
-        )
+def clock_at_start(control: StepControl, energy: float) -> Rows:
+    """The one row of `CLOCK` at the release, with the energy of the release [J]."""
+    largest = max(2 * energy, control.least_energy)
+    return rows(CLOCK, 1, allowed=control.short, energy=largest, no_rate=True)
 
 
 @inlined
@@ -428,31 +411,38 @@ def step_to_event(
     return step, to_touch
 
 
+@inlined
+def forget_rate(control: StepControl, clock: Row) -> None:
+    """Go on with short steps, the first of which knows no rate of the acceleration."""
+    clock.allowed, clock.calm_steps, clock.no_rate = control.short, 0, True
+
+
 @compiled
 def fitted_loop(
-    memory: EngineArrays, setting: Setting, control: StepControl, state: Progress, clock: StepClock, record: Record
-) -> tuple[tuple[Any, ...], int]:
+    memory: EngineArrays, setting: Setting, control: StepControl, state: Progress, clocks: Rows, record: Record
+) -> None:
     """Steps that fit the motion until the record is full or the run is over.
 
-    Returns the values of the clock, see `compiled`, and how many steps they were.
+    `clocks` has the row of `CLOCK` that is read and written.
     """
-    t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended = clock
-    points, openings, sliding, n = setting.points, state.openings, state.sliding, 0
+    clock, points, openings, sliding = clocks[0], setting.points, state.openings, state.sliding
     axes, method = points.places.axes, control.method
-    if previous == 0:
-        set_step(memory, points, control, allowed)
-        take_first_acceleration(memory, setting, state, allowed)
-    while n < len(record.t) and not ended:
+    clock.steps = 0
+    if clock.previous == 0:
+        set_step(memory, points, control, clock.allowed)
+        take_first_acceleration(memory, setting, state, clock.allowed)
+    while clock.steps < len(record.t) and not clock.ended:
+        n, t, previous = clock.steps, clock.t, clock.previous
         update_rates(memory, setting, state, t, previous)
-        if closure_changed(points.places, openings, state.closed) and previous > control.short and not no_rate:
+        if closure_changed(points.places, openings, state.closed) and previous > control.short and not clock.no_rate:
             take_acceleration(memory, setting, state, t)
-            allowed, calm_steps, no_rate = control.short, 0, True
+            forget_rate(control, clock)
 
         # predict
-        step, to_touch = allowed_step(setting, control, openings, allowed), 0.0
-        if not unpredictable:
-            least = method.faded * control.accuracy * energy
-            step, to_touch = step_to_event(setting, control, state, step, allowed, least)
+        step, to_touch = allowed_step(setting, control, openings, clock.allowed), 0.0
+        if not clock.unpredictable:
+            least = method.faded * control.accuracy * clock.energy
+            step, to_touch = step_to_event(setting, control, state, step, clock.allowed, least)
         if to_touch > 0:
             step = to_touch
 
@@ -467,25 +457,24 @@ def fitted_loop(
             set_step(memory, points, control, step)
         record.t[n], record.h[n] = t, step
         make_step(memory, setting, sliding, state.frames, record, n)
-        ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points, openings)
+        clock.ended = t >= setting.duration or lies_on_its_face(record.pose[n], axes) or out_of_reach(points, openings)
         sliding_turned = sliding_changed(sliding)
-        change = change_of_acceleration(memory, setting, state, times, no_rate or sliding_turned)
+        change = change_of_acceleration(memory, setting, state, times, clock.no_rate or sliding_turned)
         twice_kinetic = mass_square(setting.masses, setting.products, memory.velocity)
-        change /= max(energy, method.faster * twice_kinetic)
-        unpredictable = change > method.abrupt * method.abrupt
+        change /= max(clock.energy, method.faster * twice_kinetic)
+        clock.unpredictable = change > method.abrupt * method.abrupt
         settle_pose(memory, setting, control, state, record, n)
 
         # length of the next step
-        t, previous = t + step, step
+        clock.t, clock.previous, clock.steps = t + step, step, n + 1
         if to_touch > 0:
-            energy = max(twice_kinetic, control.least_energy)
-            touches += 1
-            allowed, calm_steps, no_rate = control.short, 0, True
+            clock.energy = max(twice_kinetic, control.least_energy)
+            clock.touches += 1
+            forget_rate(control, clock)
         else:
-            allowed, calm_steps = next_length(control, step, math.inf if no_rate else change, calm_steps)
-            no_rate = False
-        n += 1
-    return (t, allowed, previous, energy, calm_steps, no_rate, unpredictable, touches, ended), n
+            change = math.inf if clock.no_rate else change
+            clock.allowed, clock.calm_steps = next_length(control, step, change, clock.calm_steps)
+            clock.no_rate = False
 
 
 @compiled

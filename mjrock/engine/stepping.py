@@ -21,7 +21,7 @@ from ..method import METHOD, Method
 from ..quantities import Array
 from ..scene.course import Course
 from ..scene.scene import Scene
-from .loop import Progress, StepClock, fitted_loop, fixed_loop, release, settle_ties
+from .loop import Progress, clock_at_start, fitted_loop, fixed_loop, release, settle_ties
 from .model import Engine, require_finite
 from .record import Record, StepKinds, Steps
 from .setting import Setting
@@ -51,18 +51,17 @@ def fitted_steps(
     settle_ties(memory, setting, frames_of(memory.pose, places.freedom))
     sliding = Sliding.at_start(setting.points, coulomb=coulomb, method=method)
     state = Progress.at_start(memory, setting, Joints.of_scene(scene), sliding)
-    clock = StepClock.started(control, course.energy(scene))
+    clocks = clock_at_start(control, course.energy(scene))
+    clock = clocks[0]
 
     def advance(record: Record) -> tuple[int, float, bool]:
-        nonlocal clock
-        values, n = fitted_loop(memory, setting, control, state, clock, record)
-        clock = StepClock(*values)
-        return n, clock.t, clock.ended
+        fitted_loop(memory, setting, control, state, clocks, record)
+        return int(clock.steps), float(clock.t), bool(clock.ended)
 
     record = on_plates(_recorded(engine, course.duration, advance), scene)
     kind = (record.h * control.frequency >= method.smooth).astype(np.int64)
     kinds = StepKinds(control.beta, control.ringing, kind, released_on)
-    return Steps(record, kinds, touches=clock.touches, method=method, freedom=places.freedom)
+    return Steps(record, kinds, touches=int(clock.touches), method=method, freedom=places.freedom)
 
 
 def fixed_steps(

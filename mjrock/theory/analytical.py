@@ -83,7 +83,7 @@ def solve_analytical(
     with first_answer(solve_analytical, **arguments):
         motion = _rocking(case, e, rtol, rest)
         outcome = _outcome(case, motion)
-        t_end = motion.end.t if outcome is Outcome.OVERTURNED else case.duration
+        t_end = float(motion.end.t) if outcome is Outcome.OVERTURNED else case.duration
         samples = np.linspace(0.0, t_end, intervals(t_end, spacing) + 1)
         theta, omega = motion.sample(samples)
     released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
@@ -187,7 +187,7 @@ def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tup
     """Energy of the ties at the samples [J], and what they have yielded."""
     if not case.pulls:
         return 0.0, {}
-    times = motion.knots[:, 0]
+    times = motion.knots["t"]
     plastic, ends = np.empty((len(t), len(case.pulls))), {}
     for i, (pull, elongation) in enumerate(zip(case.pulls, motion.yielded.T, strict=True)):
         broken = np.isinf(elongation)

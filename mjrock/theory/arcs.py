@@ -18,8 +18,10 @@ import numpy as np
 from ..compiled import compiled, inlined
 from ..problem.wall.case import Case
 from ..problem.wall.restoring_moment import pulled, yielded
-from ..quantities import ON_ITS_FACE, Array, Integers
+from ..quantities import ON_ITS_FACE, Array
 from ..result.motion import interpolated
+from ..result.rocking import Impact
+from ..rows import Row, Rows, flags, integers, numbers, row_type, rows
 from .law import (
     BROKEN,
     SLACK,
@@ -124,16 +126,18 @@ class Rules(NamedTuple):
     duration: float
 
 
-class ArcClock(NamedTuple):
-    """Where the motion is: time [s], rotation [rad], velocity [rad/s], side, and whether the wall rests or is done."""
-
-    t: float
-    theta: float
-    omega: float
-    side: float
-    at_rest: bool
-    fell: bool
-    ended: bool
+CLOCK = row_type(
+    [
+        *numbers("t", "theta", "omega", "side"),
+        *integers("knots", "impacts", "peaks"),
+        *flags("at_rest", "fell", "ended"),
+    ]
+)
+"""Where the motion is: time [s], rotation [rad], velocity [rad/s] and side, how many knots, impacts and peaks are
+written, and whether the wall rests, lies on its face, and is at the end of the run."""
+KNOT = row_type(numbers("t", "theta", "omega", "acceleration"))
+"""One end of a step: time [s], rotation [rad], velocity [rad/s] and acceleration [rad/s2]."""
+IMPACT = row_type(numbers(*Impact._fields))
 
 
 class ArcRoom(NamedTuple):
@@ -142,22 +146,25 @@ class ArcRoom(NamedTuple):
     Args:
         e: restitution of each impact to come [-], as the root of the energy that is left, with the sign of the
             velocity, shape (n,).
-        knots: time [s], rotation [rad], velocity [rad/s] and acceleration [rad/s2] at both ends of each step, shape
-            (n, 4).
-        impacts: the numbers of each impact, as in `mjrock.result.rocking.Impact`, shape (n, 5).
+        knots: rows of `KNOT` at both ends of each step, shape (n,).
+        impacts: rows with the numbers of `mjrock.result.rocking.Impact`, shape (n,).
         peaks: rotation maxima |theta| [rad], shape (n,).
-        counts: how many of each there are, shape (3,).
     """
 
     e: Array
-    knots: Array
-    impacts: Array
+    knots: Rows
+    impacts: Rows
     peaks: Array
-    counts: Integers
 
-    def filled(self) -> tuple[Array, ...]:
-        """Copies of the parts that are filled."""
-        return tuple(array[:count].copy() for array, count in zip(self[1:4], self.counts, strict=True))
+    @classmethod
+    def empty(cls, e: Array) -> ArcRoom:
+        """Room for as many impacts as there are restitutions."""
+        return cls(e, rows(KNOT, CHUNK), rows(IMPACT, len(e)), np.empty(len(e)))
+
+    def filled(self, clock: Row) -> tuple[Rows | Array, ...]:
+        """Copies of the knots, impacts and peaks that are written."""
+        parts = (self.knots, clock.knots), (self.impacts, clock.impacts), (self.peaks, clock.peaks)
+        return tuple(array[:count].copy() for array, count in parts)
 
 
 @inlined
@@ -223,46 +230,45 @@ def time_of_end(end: int, loads: Loads, theta: float, omega: float, h: float) ->
 
 
 @inlined
-def write_knot(room: ArcRoom, t: float, theta: float, omega: float, rate: float) -> None:
-    """Write a knot, with its acceleration."""
-    knot = room.knots[room.counts[0]]
-    knot[0], knot[1], knot[2], knot[3] = t, theta, omega, rate
-    room.counts[0] += 1
+def write_knot(room: ArcRoom, clock: Row, acceleration: float) -> None:
+    """Write a knot where the motion is, with its acceleration [rad/s2]."""
+    knot = room.knots[clock.knots]
+    knot.t, knot.theta, knot.omega, knot.acceleration = clock.t, clock.theta, clock.omega, acceleration
+    clock.knots += 1
 
 
 @inlined
-def write_impact(room: ArcRoom, law: RockingLaw, t: float, side: float, omega: float) -> float:
-    """Write an impact. Returns the angular velocity after it [rad/s]."""
-    impact, e = room.impacts[room.counts[1]], room.e[room.counts[1]]
+def rebound(room: ArcRoom, law: RockingLaw, rest: float, clock: Row) -> None:
+    """Let the wall rebound, or rest where it has no more than the energy `rest` [J] left, and write the impact."""
+    impact, e, omega = room.impacts[clock.impacts], room.e[clock.impacts], clock.omega
     leaving = math.copysign(1.0, e * omega)
-    arriving = (law.outer if side > 0 else law.inner).inertia
+    arriving = (law.outer if clock.side > 0 else law.inner).inertia
     departing = (law.outer if leaving > 0 else law.inner).inertia
-    after: float = e * omega * math.sqrt(arriving / departing)
-    impact[0], impact[1], impact[2] = t, omega, after
-    impact[3], impact[4] = 0.5 * arriving * omega * omega, 0.5 * departing * after * after
-    room.counts[1] += 1
-    return after
+    after = e * omega * math.sqrt(arriving / departing)
+    impact.t, impact.omega_before, impact.omega_after = clock.t, omega, after
+    impact.energy_before, impact.energy_after = 0.5 * arriving * omega * omega, 0.5 * departing * after * after
+    clock.omega, clock.side, clock.at_rest = after, math.copysign(1.0, after), impact.energy_after <= rest
+    clock.impacts += 1
 
 
 @compiled
-def rocking_loop(
-    law: RockingLaw, rules: Rules, clock: ArcClock, room: ArcRoom
-) -> tuple[float, float, float, float, bool, bool, bool]:
+def rocking_loop(law: RockingLaw, rules: Rules, clocks: Rows, room: ArcRoom) -> None:
     """Follow the wall until the room is nearly full, or until it lies on its face or the time is over.
 
-    Returns the values of the clock, see `compiled`.
+    `clocks` has the row of `CLOCK` that is read and written.
     """
-    t, theta, omega, side, at_rest, fell, ended = clock
-    ties = law.ties
-    while room.counts[0] + 4 < len(room.knots) and max(room.counts[1], room.counts[2]) < len(room.peaks) and not ended:
-        if at_rest:
-            lifted, towards = uplift(law, rules.one_sided, t, rules.duration)
-            write_knot(room, t, 0.0, 0.0, 0.0)
+    clock, ties = clocks[0], law.ties
+    while clock.knots + 4 < len(room.knots) and max(clock.impacts, clock.peaks) < len(room.peaks) and not clock.ended:
+        if clock.at_rest:
+            lifted, towards = uplift(law, rules.one_sided, clock.t, rules.duration)
+            clock.theta, clock.omega = 0.0, 0.0
+            write_knot(room, clock, 0.0)
             if lifted >= rules.duration:
-                t, ended = rules.duration, True
-                write_knot(room, t, 0.0, 0.0, 0.0)
+                clock.t, clock.ended = rules.duration, True
+                write_knot(room, clock, 0.0)
                 break
-            t, theta, omega, side, at_rest = lifted, 0.0, 0.0, towards, False
+            clock.t, clock.side, clock.at_rest = lifted, towards, False
+        t, theta, omega, side = clock.t, clock.theta, clock.omega, clock.side
         toe = law.outer if side > 0 else law.inner
         push, stop = pushed(law.x, law.z, t)
         loads = Loads(toe, ties, push)
@@ -285,18 +291,15 @@ def rocking_loop(
             _, new_omega, _, k3 = nystroem(loads, theta, omega, h)
             new_theta = 0.0 if hit else side * ON_ITS_FACE
         elif turned and side * omega > 0:
-            room.peaks[room.counts[2]] = abs(new_theta)
-            room.counts[2] += 1
+            room.peaks[clock.peaks] = abs(new_theta)
+            clock.peaks += 1
         update_states(toe, ties, new_theta, turned)
-        write_knot(room, t, theta, omega, k1)
-        t, theta, omega = t + h, new_theta, new_omega
-        write_knot(room, t, theta, omega, k3)
+        write_knot(room, clock, k1)
+        clock.t, clock.theta, clock.omega = t + h, new_theta, new_omega
+        write_knot(room, clock, k3)
         if hit:
-            omega = write_impact(room, law, t, side, omega)
-            at_rest = room.impacts[room.counts[1] - 1, 4] <= rules.rest
-            side = math.copysign(1.0, omega)
-        ended = fell or t >= rules.duration
-    return t, theta, omega, side, at_rest, fell, ended
+            rebound(room, law, rules.rest, clock)
+        clock.fell, clock.ended = fell, fell or clock.t >= rules.duration
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,20 +308,21 @@ class RockingMotion:
 
     Args:
         knots, impacts, peaks: as in `ArcRoom`, of the whole motion.
-        end: where it was at the end.
+        end: the row of `CLOCK` at the end.
         yielded: elongation that each tie has yielded by each knot [m], infinite once it has broken, shape (n, ties).
     """
 
-    knots: Array
-    impacts: Array
+    knots: Rows
+    impacts: Rows
     peaks: Array
-    end: ArcClock
+    end: Row
     yielded: Array
 
     def sample(self, times: Array) -> Array:
         """Rotation [rad] and angular velocity [rad/s] at n increasing times [s], shape (2, n)."""
-        t, values, rates = self.knots[:, 0], self.knots[:, 1:3], self.knots[:, 2:]
-        return interpolated(t.copy(), values.copy(), rates.copy(), times)[0].T
+        t, theta, omega, acceleration = (self.knots[name] for name in KNOT.names or ())
+        values, rates = np.column_stack([theta, omega]), np.column_stack([omega, acceleration])
+        return interpolated(t.copy(), values, rates, times)[0].T
 
     @property
     def evaluations(self) -> int:
@@ -338,17 +342,17 @@ def rock(case: Case, restitutions: Callable[[int], Array], least: float, rtol: f
     """
     law = RockingLaw.from_case(case)
     rules = Rules(case.one_sided, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
-    clock = ArcClock(0.0, case.theta0, case.omega0, case.direction, case.release_energy == 0, False, False)
+    clocks = rows(CLOCK, 1, theta=case.theta0, omega=case.omega0, side=case.direction)
+    clock = clocks[0]
+    clock.at_rest = case.release_energy == 0
     for _ in range(3):  # from slack to taut to yielding to taut
         update_states(Toe.from_case(case, case.direction), law.ties, case.theta0, not case.released_outwards)
-    few = CHUNK // 4
-    e, counts = restitutions(few), np.zeros(3, dtype=np.int64)
-    room, parts = ArcRoom(e, np.empty((CHUNK, 4)), np.empty((few, 5)), np.empty(few), counts), []
+    room, parts = ArcRoom.empty(restitutions(CHUNK // 4)), []
     while not clock.ended:
-        clock = ArcClock(*rocking_loop(law, rules, clock, room))
-        parts.append(room.filled())
-        past = int(counts[1])
-        e[:] = np.append(e[past:], restitutions(past))
-        counts[:] = 0
+        rocking_loop(law, rules, clocks, room)
+        parts.append(room.filled(clock))
+        past = int(clock.impacts)
+        room.e[:] = np.append(room.e[past:], restitutions(past))
+        clock.knots = clock.impacts = clock.peaks = 0
     knots, impacts, peaks = map(np.concatenate, zip(*parts, strict=True))
-    return RockingMotion(knots, impacts, peaks, clock, yielded(case.pulls, knots[:, 1]))
+    return RockingMotion(knots, impacts, peaks, clock, yielded(case.pulls, knots["theta"]))

@@ -5,12 +5,13 @@ from scipy.spatial.transform import Rotation
 
 from mjrock.distinct.kinds.mortar import Bonds
 from mjrock.distinct.rotation import take_inverse_inertia, update_rotation
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, System
 from mjrock.distinct.thread import threads_of
 from mjrock.geometry.frames import PLANE, SPACE
 from mjrock.problem.wall.rest_geometry import Solid, in_space
+from mjrock.rows import rows
 from mjrock.scene.course import Ground
 
 TURNS = Rotation.from_rotvec([[0.7, -0.4, 0.3], [-0.2, 0.5, 0.6]])

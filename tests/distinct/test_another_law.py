@@ -11,13 +11,14 @@ from everyday import crossed
 from mjrock.distinct import loop
 from mjrock.distinct.contacts import touches
 from mjrock.distinct.loop import Clock
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
 from mjrock.distinct.search import handover
 from mjrock.distinct.search.handover import Lines
 from mjrock.distinct.step_length import Impacts
 from mjrock.distinct.supports import moving
 from mjrock.distinct.system import Books, Samples
 from mjrock.problem.masonry.laws import joint_law
+from mjrock.rows import rows
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 K, DEEPEST = 4e5, 0.02

@@ -11,10 +11,10 @@ from test_contact_lines import ALONG, BOTH, FACES, NORMAL, met, put_line
 import mjrock as mr
 from mjrock.distinct.contacts import faces, friction
 from mjrock.distinct.kinds import mortar as bonds
-from mjrock.distinct.rows import rows
 from mjrock.distinct.search.validity import JointState, mark_left
 from mjrock.distinct.setup import setup_of
 from mjrock.problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
+from mjrock.rows import rows
 
 H, K, C, K_SHEAR, C_SHEAR = 1e-3, 1e6, 40.0, 4e5, 20.0
 TENSION, COHESION, TORN, WORN = 1e3, 2e3, 300.0, 500.0

@@ -9,9 +9,9 @@ from everyday import crossed
 
 import mjrock as mr
 from mjrock.distinct.response import require_sound
-from mjrock.distinct.rows import rows
 from mjrock.distinct.search import contact_search
 from mjrock.distinct.system import ENERGY
+from mjrock.rows import rows
 
 SOFT = {"k_n": 2e5, "friction": 0.5, "xi": 0.0}
 """Joints into which a cube of 1 m sinks by 0.1 m."""

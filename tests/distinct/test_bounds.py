@@ -11,7 +11,8 @@ CHECKED = """
 import numpy as np
 
 from mjrock.compiled import compiled, inlined
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
+from mjrock.rows import rows
 
 
 @inlined

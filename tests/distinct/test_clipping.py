@@ -8,9 +8,9 @@ from by_hand import columns
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
-from mjrock.distinct.rows import rows
 from mjrock.distinct.search import clipping
 from mjrock.distinct.search.solids import Solids
+from mjrock.rows import rows
 
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 LOWER = mr.Polyhedron.box((2.0, 2.0, 1.0), (0.0, 0.0, -0.5))

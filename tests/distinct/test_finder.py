@@ -10,11 +10,11 @@ from masonry_blocks import box
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
-from mjrock.distinct.rows import rows
 from mjrock.distinct.search import finder
 from mjrock.distinct.search.clipping import PLACE, Workspace
 from mjrock.distinct.search.finder import ContactPlaces, Finder, Near
 from mjrock.distinct.search.solids import Poses, Solids
+from mjrock.rows import rows
 
 BOX = mr.Polyhedron.box
 LOWER, UPPER = BOX((2.0, 3.0, 1.0), (0.0, 0.0, -0.5)), BOX((1.0, 0.5, 0.4), (0.2, 0.1, 0.2))

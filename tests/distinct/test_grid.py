@@ -8,11 +8,11 @@ from by_hand import columns, stood
 from scipy.spatial.transform import Rotation
 
 import mjrock as mr
-from mjrock.distinct.rows import rows
 from mjrock.distinct.search import clipping
 from mjrock.distinct.search.finder import Finder
 from mjrock.distinct.search.solids import Poses, Solids
 from mjrock.geometry import convex
+from mjrock.rows import rows
 
 BOX = mr.Polyhedron.box
 UP = (0.0, 0.0, 1.0)

@@ -8,11 +8,12 @@ from by_hand import ANGLES, PLACE, REST, TURNS, matrix, system
 
 from mjrock.distinct.contacts import faces
 from mjrock.distinct.contacts.touches import FIRST_OPENING
-from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK, kinds, rows
+from mjrock.distinct.rows import POINT_ON_FIXED_BLOCK, kinds
 from mjrock.distinct.search import handover
 from mjrock.distinct.search.finder import ContactPlaces
 from mjrock.distinct.search.handover import Blocks, Lines, Pairs, Place
 from mjrock.distinct.search.solids import Poses
+from mjrock.rows import rows
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 MOVED = np.array([0.21, -0.32, 0.23])

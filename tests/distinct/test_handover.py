@@ -6,10 +6,11 @@ from everyday import among
 from masonry_blocks import GROUND, box
 
 import mjrock as mr
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
 from mjrock.distinct.search.finder import ContactPlaces
 from mjrock.distinct.search.handover import Lines, press
 from mjrock.distinct.search.pair_law import least_among
+from mjrock.rows import rows
 
 
 @pytest.mark.parametrize("guided", among(["translation", "upright", None], "translation", None))

@@ -7,9 +7,10 @@ import pytest
 
 import mjrock as mr
 from mjrock.distinct.contacts import faces
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
 from mjrock.geometry.hull import Side
 from mjrock.problem.wall.rest_geometry import Face
+from mjrock.rows import rows
 
 TURN = 0.3
 C, S = math.cos(TURN), math.sin(TURN)

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from mjrock.distinct.kinds.law import JointLaw
-from mjrock.distinct.rows import kinds, numbers, rows
+from mjrock.distinct.rows import kinds
 from mjrock.distinct.search import pair_law
 from mjrock.geometry.frames import PLANE, SPACE
+from mjrock.rows import numbers, rows
 
 WIDTHS = [0.2, 0.5, 0.4]
 ENDS = [(0, 1), (1, 2), (1, 2)]

@@ -13,9 +13,9 @@ from mjrock.distinct.kinds.constant_forces import ConstantForces
 from mjrock.distinct.kinds.dampers import Dampers
 from mjrock.distinct.kinds.lists import act_all, numbered, record_links
 from mjrock.distinct.kinds.ties import Ties
-from mjrock.distinct.rows import rows
 from mjrock.distinct.supports import Supports, moving
 from mjrock.distinct.system import ENERGY
+from mjrock.rows import rows
 
 BOTH = pytest.mark.parametrize("d", [2, 3])
 ENDS = pytest.mark.parametrize("end", ["ground", "support", "body"])

@@ -7,7 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from mjrock.distinct import rotation
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
+from mjrock.rows import rows
 
 INERTIA = np.array([[3.0, 0.4, -0.3], [0.4, 5.0, 0.7], [-0.3, 0.7, 2.0]])
 TURN = Rotation.from_rotvec([0.7, -1.1, 0.4])

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
 from mjrock.distinct.search.softening import Sides, shares_within, unsoftened
+from mjrock.rows import rows
 
 
 def places(rng, bodies, count, d):

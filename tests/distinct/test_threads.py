@@ -15,10 +15,11 @@ import pytest
 import mjrock as mr
 from mjrock import machine
 from mjrock.distinct import thread, thread_pool
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
 from mjrock.distinct.setup import setup_of
 from mjrock.distinct.system import Books
 from mjrock.distinct.thread import LINES_TOGETHER, pending_forces, spans_of, threads_of
+from mjrock.rows import rows
 
 JOINTS = {"k_n": 1e9, "k_s": 4e8, "friction": 0.6, "xi": 0.05}
 MORTAR = mr.BONDS["cement mortar, wall J4D"]

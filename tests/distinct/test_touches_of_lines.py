@@ -5,7 +5,8 @@ import math
 import pytest
 
 from mjrock.distinct.contacts import touches
-from mjrock.distinct.rows import kinds, rows
+from mjrock.distinct.rows import kinds
+from mjrock.rows import rows
 
 H, K, C = 0.01, 3e4, 40.0
 

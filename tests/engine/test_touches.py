@@ -5,7 +5,7 @@ import pytest
 from scenes import changed, course
 
 import mjrock as mr
-from mjrock.engine.loop import Progress, StepClock, fitted_loop
+from mjrock.engine.loop import CLOCK, Progress, fitted_loop
 from mjrock.engine.mjcf import pair_rows
 from mjrock.engine.model import engine_of
 from mjrock.engine.record import Record
@@ -18,6 +18,7 @@ from mjrock.engine.touches import Openings, Touches, hardest_touch, predict_touc
 from mjrock.geometry.kinematics import gaps
 from mjrock.method import METHOD
 from mjrock.problem.wall.effect import LinkLaw
+from mjrock.rows import rows
 from mjrock.scene.parts import ConstantForces, Links
 from mjrock.scene.wall import wall_scene
 
@@ -50,10 +51,10 @@ def one_step(scene, away, h, energy=0.5 * BLOCK.mass * SPEED**2, *, abrupt=False
         state = Progress.at_start(engine.memory, setting, Joints.of_scene(scene), sliding)
         record = Record.with_room(1, (3, 3), len(scene.contacts.k))
         state.acceleration[:], state.closed[:] = 0.0, gaps(scene.places, start)[0] < 0
-        before = StepClock(0.0, h, h, float(energy), 0, False, abrupt, 0, False)
-        values, n = fitted_loop(engine.memory, setting, control, state, before, record)
-    assert n == 1
-    return StepClock(*values), record
+        clocks = rows(CLOCK, 1, allowed=h, previous=h, energy=float(energy), unpredictable=abrupt)
+        fitted_loop(engine.memory, setting, control, state, clocks, record)
+    assert clocks[0].steps == 1
+    return clocks[0], record
 
 
 @pytest.mark.parametrize("share", [0.1, 0.9])

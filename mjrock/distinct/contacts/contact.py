@@ -11,8 +11,8 @@ import math
 from ...compiled import inlined
 from ...geometry.vectors import dot, no_spin, plus, put, read, scaled
 from ...problem.masonry.laws.joint_law import normal_force, shear_limit, stored
+from ...rows import Row
 from ..rotation import apply_impulse_at
-from ..rows import Row
 from ..system import Books, System
 from ..thread import add_line_force
 from .faces import TURNED_OVER, Meeting, meeting, relative_velocity, where_friction_rubs

@@ -19,8 +19,9 @@ from ...compiled import inlined
 from ...geometry.vectors import Vector, components, dot, minus, norm, plus, read, scaled, spun, vector
 from ...problem.wall.rest_geometry import Face
 from ...quantities import Array, Integers
+from ...rows import Row, Rows, rows
 from ..rotation import in_body, in_world, may_face_away, rotation_change
-from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows, kinds, rows
+from ..rows import POINT_ON_FIXED_BLOCK, kinds
 from ..supports import Supports
 from ..system import System
 

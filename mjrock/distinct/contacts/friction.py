@@ -34,8 +34,8 @@ from ...geometry.vectors import (
 )
 from ...problem.masonry.laws.joint_law import shear_limit, stored_along
 from ...quantities import Array, Integers
+from ...rows import Row, Rows
 from ..rotation import add_momentum, apply_impulse, in_body, in_world, spin_from_many
-from ..rows import Row, Rows
 from ..supports import Supports
 from ..system import Books, System
 from .faces import Meeting

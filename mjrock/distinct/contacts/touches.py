@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from ...compiled import inlined
 from ...problem.masonry.laws.joint_law import equivalent_stiffness, normal_force, secant_stiffness
-from ..rows import Row
+from ...rows import Row
 
 FIRST_OPENING = 1e-9
 """Opening at which a line begins that nothing presses on, over the size of the smaller one of its blocks [-]. So it is

@@ -12,10 +12,10 @@ from ...geometry.vectors import Vector, dot, increase, plus, read, scaled, spun
 from ...linear import rates_matrix
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array, Integers
+from ...rows import Row, Rows
 from ...scene.parts import GROUND
 from ...scene.scene import Scene
 from ..rotation import rotation_change, rotations
-from ..rows import Row, Rows
 from ..supports import Supports, move_supports, moving, places, velocity_changes
 from ..system import Books, System
 from ..thread import add_force

@@ -5,9 +5,9 @@ from __future__ import annotations
 from ...compiled import inlined
 from ...geometry.vectors import dot, plus, read
 from ...problem.masonry.case import AnyCase
+from ...rows import Row, Rows
 from ...scene.scene import Scene
 from ..rotation import rotation_change
-from ..rows import Row, Rows
 from ..system import Books, System
 from ..thread import add_force
 from .link import Columns, Kind, Named, Table

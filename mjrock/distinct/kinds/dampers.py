@@ -8,8 +8,8 @@ from ...compiled import inlined
 from ...problem.masonry.case import AnyCase
 from ...problem.wall.effect import DASHPOT, damping_coefficient, resistance
 from ...quantities import Array
+from ...rows import Rows
 from ...scene.scene import Scene
-from ..rows import Rows
 from ..system import Books, System
 from .link import Kind, Named, Table, book_support, lengthening, pull, push_apart
 

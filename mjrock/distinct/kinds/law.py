@@ -16,8 +16,8 @@ from ...compiled import inlined
 from ...problem.masonry.laws.bond import Bond
 from ...problem.masonry.laws.joint_law import Law
 from ...quantities import Array, Flags, Integers
+from ...rows import Fields, Row, Rows, numbers, row_type, rows, vectors
 from ...scene.scene import Scene
-from ..rows import Fields, Row, Rows, numbers, rows, vectors
 from ..system import Books, System
 
 OF_A_LINE = (*Law._fields, "c_s", "margin", "shear_state")
@@ -53,7 +53,7 @@ class JointLaw:
         ]
         if twice := {name for name, many in Counter(name for name, *_ in fields).items() if many > 1}:
             raise TypeError(f"{cls.__name__} has {', '.join(sorted(twice))} as a number of a joint too; name one anew")
-        return rows(np.dtype(fields), count)
+        return rows(row_type(fields), count)
 
     @classmethod
     def from_scene(cls, scene: Scene, lines: Rows) -> Self:

@@ -19,10 +19,10 @@ from ...linear import rates_of
 from ...problem.masonry.case import AnyCase
 from ...problem.wall.effect import LinkLaw
 from ...quantities import Array, Integers
+from ...rows import Fields, Row, Rows, integers, numbers, row_type, rows, vectors
 from ...scene.parts import Links
 from ...scene.scene import Scene
 from ..rotation import rotation_change
-from ..rows import Fields, Row, Rows, integers, numbers, rows, vectors
 from ..system import Books, System
 from ..thread import add_force
 
@@ -77,7 +77,7 @@ class Kind:
             *numbers(*cls.own_fields),
             *cls.further,
         ]
-        return rows(np.dtype(fields), count, **{"anchor": -1, "anchor_block": -1, "support": -1} | columns)
+        return rows(row_type(fields), count, **{"anchor": -1, "anchor_block": -1, "support": -1} | columns)
 
     @classmethod
     def linking(cls, links: Links, between: Array, **columns: Array | Integers | float) -> Named:

@@ -8,8 +8,8 @@ from ...compiled import inlined, method
 from ...geometry.vectors import Vector, plus, read
 from ...problem.masonry.case import AnyCase
 from ...quantities import Array
+from ...rows import Row, Rows
 from ...scene.scene import Scene
-from ..rows import Row, Rows
 from ..system import Books, System, Tables
 from .actuators import Actuators
 from .constant_forces import ConstantForces

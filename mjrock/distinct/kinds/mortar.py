@@ -19,11 +19,11 @@ from ...problem.masonry.laws.bond import Bond
 from ...problem.masonry.laws.bond_law import bonded_limit, crush, tear, wear
 from ...problem.masonry.laws.joint_law import normal_force
 from ...quantities import Array, Flags
+from ...rows import Fields, Row, Rows, numbers
 from ...scene.scene import Scene
 from ..contacts.faces import meeting, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sheared, shortened, stretched
 from ..rotation import in_body
-from ..rows import Fields, Row, Rows, numbers
 from ..system import Books, System
 from ..thread import add_line_force
 from .law import JointLaw

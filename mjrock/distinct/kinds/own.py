@@ -25,10 +25,10 @@ from ...problem.masonry.laws.joint_law import normal_force, stored
 from ...problem.masonry.laws.own_law import OF_K_N, Own
 from ...problem.wall.user_law import ANSWERS, OF_DAMPING, OF_DISSIPATED, OF_ENERGY, OF_LOST, OF_STRESS, ROOM, layout
 from ...quantities import GRAVITY, Array, Flags, Integers
+from ...rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
 from ...scene.scene import Scene
 from ..contacts.faces import meeting, relative_velocity, where_friction_rubs
 from ..contacts.friction import along_face, as_vector, carried, sprung_friction
-from ..rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
 from ..system import Books, System
 from ..thread import add_line_force
 from .law import JointLaw

@@ -10,8 +10,8 @@ from ...compiled import inlined
 from ...problem.masonry.case import AnyCase
 from ...problem.wall.user_law import OF_DAMPING, OF_DISSIPATED, OF_ENERGY, OF_STRESS, ROOM
 from ...quantities import Array
+from ...rows import Fields, Row, Rows, integers
 from ...scene.scene import Scene
-from ..rows import Fields, Row, Rows, integers
 from ..system import Books, System
 from .link import Kind, Named, Table, book_support, lengthening, pull, push_apart
 from .own import address_of, answer

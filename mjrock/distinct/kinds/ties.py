@@ -11,10 +11,10 @@ import math
 from ...compiled import inlined
 from ...geometry.vectors import scaled
 from ...problem.masonry.case import AnyCase
+from ...rows import Row, Rows
 from ...scene.scene import Scene
 from ..contacts.touches import due_impulse
 from ..rotation import apply_impulse_at
-from ..rows import Row, Rows
 from ..system import Books, System
 from .link import INFINITE_IN_LAW, Kind, Named, Pull, Table, book_support, carried_along, lengthening, pull, push_apart
 

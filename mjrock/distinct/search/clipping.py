@@ -17,16 +17,14 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from ...compiled import inlined
 from ...geometry.vectors import Vector, dot, minus, norm, plus, put, scaled, spun, vector
 from ...quantities import Array
-from ..rows import Row, Rows, integers, numbers, vectors
+from ...rows import Row, Rows, integers, numbers, row_type, vectors
 from .constants import AS_LARGE, AS_TOWARDS, EDGES_ALONG_FACE, ON_EDGE, ONE_PLACE, PARALLEL_EDGES
 from .solids import Solids, triple
 
-PLACE = np.dtype(
+PLACE = row_type(
     [*integers("face", "other"), *vectors(3, "at", "normal"), *numbers("gap", "share", "area"), *integers("sides")]
 )
 """A contact place: block of the face, other block, position [m], normal out of the face, gap [m], share, common area

@@ -23,9 +23,10 @@ import numpy as np
 from ...compiled import for_types_of
 from ...problem.wall.rest_geometry import RestGeometry
 from ...quantities import Array, Flags, Integers
+from ...rows import chosen, joined, rows, unsound
 from ...scene.scene import Scene
 from ..rotation import rotations
-from ..rows import chosen, joined, rows, unsound
+from ..rows import MAY_BE_INFINITE
 from ..supports import velocity_changes
 from ..system import Books, System
 from .constants import (
@@ -256,7 +257,7 @@ class ContactSearch:
         hand_over(new, found, gone, pairs, blocks)
         for each, added in own:
             each.set_secant_stiffness(added, new.rows, new.depth)
-        for place in unsound(new.rows)[:1]:
+        for place in unsound(new.rows, MAY_BE_INFINITE)[:1]:
             one, other = (self.names[int(block[place])] for block in (found.face, found.other))
             raise ArithmeticError(f"the contact of {one} and {other}")
         if left_joints.any():

@@ -21,7 +21,7 @@ from ...geometry.vectors import Vector, dot, minus, norm, plus, read, scaled, sp
 from ...problem.masonry.blocks.joints import each_with_each
 from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
-from ..rows import Rows, rows
+from ...rows import Rows, rows
 from .clipping import (
     PLACE,
     Workspace,

@@ -26,9 +26,10 @@ from ...geometry.vectors import (
 )
 from ...problem.masonry.laws.joint_law import depth_of_energy, depth_of_force, normal_force, shear_limit, stored
 from ...quantities import Array, Integers
+from ...rows import Row, Rows
 from ..contacts.friction import along_face, shortened, turned_along
 from ..contacts.touches import FIRST_OPENING
-from ..rows import POINT_ON_FIXED_BLOCK, Row, Rows
+from ..rows import POINT_ON_FIXED_BLOCK
 from .constants import AS_NEAR, REGAINED, SAME_NORMAL, SAME_PLACE
 from .finder import ContactPlaces
 from .solids import Poses, changed

@@ -33,9 +33,9 @@ from ...problem.masonry.laws.dry import PairProperties
 from ...problem.masonry.laws.joint_law import INTENSIVE, Law, largest_stiffness
 from ...problem.wall.rest_geometry import Solid
 from ...quantities import Array, Flags, Integers
+from ...rows import Rows, chosen, joined, rows
 from ...scene.parts import JointSprings
 from ...scene.scene import Scene
-from ..rows import Rows, chosen, joined, rows
 from ..stable_step import longest_step
 from ..step_length import Impacts, LongestSteps
 from ..system import System

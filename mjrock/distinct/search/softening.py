@@ -30,8 +30,8 @@ from ...geometry.vectors import (
 )
 from ...problem.masonry.laws.joint_law import Law, largest_stiffness
 from ...quantities import Array, Integers
+from ...rows import Row, Rows
 from ..rotation import spin_from_many
-from ..rows import Row, Rows
 from .constants import SQUARINGS, STABLE
 
 
