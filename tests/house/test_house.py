@@ -20,7 +20,7 @@ FLOORS = (
     ("_version", "bars", "command_line", "background_compilation", "deprecation", "interrupts", "notebook"),
     ("loop_cache",),
     ("compiled", "compiler", "method", "quantities"),
-    ("geometry", "linear"),
+    ("geometry", "linear", "rows"),
     ("problem.ground",),
     ("problem.wall",),
     ("problem.damping",),
