@@ -15,7 +15,7 @@ from ..compiled import for_types_of
 from ..quantities import warn_of
 from ..rows import unsound
 from ..scene.time_step import stepping_seconds
-from .kinds.own import OwnLaws
+from .kinds.own import ERRORS_OF_LAWS, OwnLaws
 from .kinds.own_links import OwnLinks
 from .loop import Clock, advance
 from .memory import Memory, remember
@@ -61,6 +61,7 @@ def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, thre
     """
     system, search, stop, memory = setup.system, setup.search, grid.last + 1, setup.memory
     clock = clock_at_start(setup, grid)
+    ERRORS_OF_LAWS.clear()
     for table in system.links:
         table.look_ahead(STEPS_AHEAD if setup.step_length.links_look_ahead(grid.h) else 0.0)
     require_sound_rows(system)
@@ -138,7 +139,7 @@ def broken_laws(setup: Setup, system: System) -> Iterator[str]:
     for law in system.laws:
         if isinstance(law, OwnLaws) and len(law.rows):
             springs = (
-                np.isfinite(system.lines["k"]) & np.isfinite(system.lines["bent"]) & np.isfinite(system.lines["c"])
+                np.isfinite(system.lines["k"]) & np.isfinite(system.lines["k_excess"]) & np.isfinite(system.lines["c"])
             )
             springs[unsound(law.rows, law.endless)] = False
             for joint in law.rows["joint"][~springs & (law.rows["address"] != 0)].tolist():
@@ -149,8 +150,10 @@ def broken_laws(setup: Setup, system: System) -> Iterator[str]:
 
 
 def breakdown(what: str, t: float) -> RuntimeError:
-    """The error of a run whose numbers are finite no longer at a time [s]."""
-    return RuntimeError(f"{what} breaks down by t = {t:.4g} s: its numbers are not finite; take a shorter timestep")
+    """The error of a run whose numbers are no longer finite at a time [s], with what an own law has raised."""
+    failed = f"; a law raised {type(ERRORS_OF_LAWS[0]).__name__}: {ERRORS_OF_LAWS[0]}" if ERRORS_OF_LAWS else ""
+    remedy = "its numbers are not finite; take a shorter timestep"
+    return RuntimeError(f"{what} breaks down by t = {t:.4g} s: {remedy}{failed}")
 
 
 def require_sound_rows(system: System) -> None:

@@ -132,8 +132,43 @@ class View(NamedTuple):
         tones = np.concatenate([brightness[..., None] * surfaces.colour[:, None], [np.outer((SHADED, 1.0), FLOOR)]])
         colours = np.zeros((self.size[1] // fine, self.size[0] // fine, 4))
         piece = np.append(surfaces.number, (NO_SURFACE, BARE_GROUND))
-        _paint(depth, shown, piece, sun_depth, to_sun, to_ground, np.minimum(tones, 1.0), edge, fine, colours)
+        light = Light(sun_depth, to_sun, to_ground, np.minimum(tones, 1.0))
+        _paint(Parts(depth, shown, piece, edge, fine), light, colours)
         return colours
+
+
+class Parts(NamedTuple):
+    """The parts of a picture, some to a pixel.
+
+    Args:
+        depth: how far before the middle each lies [part].
+        shown: number of the surface that each shows.
+        piece: the plane piece of a body that each surface is of.
+        edge: width of edges [part].
+        fine: number of parts along each side of a pixel.
+    """
+
+    depth: Array
+    shown: Integers
+    piece: Integers
+    edge: int
+    fine: int
+
+
+class Light(NamedTuple):
+    """Sun and shade.
+
+    Args:
+        sun_depth: how far before the middle the surfaces lie that are seen from the sun.
+        to_sun: the pixel of the view from the sun, as `View.places` has it.
+        to_ground: the place over the radius of the ground, likewise.
+        tones: colours of each surface, and of the ground, in the shade and in the sun, shape (n + 1, 2, 3).
+    """
+
+    sun_depth: Array
+    to_sun: Array
+    to_ground: Array
+    tones: Array
 
 
 @compiled
@@ -182,31 +217,10 @@ def _uncover(to_ground: Array, depth: Array, shown: Integers) -> None:
 
 
 @compiled
-def _paint(
-    depth: Array,
-    shown: Integers,
-    piece: Integers,
-    sun_depth: Array,
-    to_sun: Array,
-    to_ground: Array,
-    tones: Array,
-    edge: int,
-    fine: int,
-    colours: Array,
-) -> None:
-    """Colour each pixel of a picture by the mean of its parts.
-
-    Args:
-        depth, shown: how far before the middle the parts lie, and the surface that each shows.
-        piece: the plane piece of a body that each surface is of.
-        sun_depth: how far before the middle the surfaces lie that are seen from the sun.
-        to_sun, to_ground: the pixel of the view from the sun, and the place over the radius of the ground, as
-            `View.places` has it.
-        tones: colours of each surface, and of the ground, in the shade and in the sun, shape (n + 1, 2, 3).
-        edge: width of edges [pixel].
-        fine: number of parts along each side of a pixel.
-        colours: of the pixels, 0 at first, shape (height, width, 4).
-    """
+def _paint(parts: Parts, light: Light, colours: Array) -> None:
+    """Colour each pixel of a picture by the mean of its parts. Colours are 0 at first, shape (height, width, 4)."""
+    depth, shown, piece, edge, fine = parts
+    sun_depth, to_sun, to_ground, tones = light
     high, wide = depth.shape
     for part in range(colours.shape[0] * fine * colours.shape[1] * fine):
         row, column = part // (colours.shape[1] * fine), part % (colours.shape[1] * fine)

@@ -57,20 +57,20 @@ def touched_forces(line: Row, gap: float, rate: float, h: float) -> tuple[float,
         return forces_of_leaving(line, gap, rate, h)
     if h * rate < gap < 0:
         since = gap / rate
-        late, bent = 0.5 * (h - since) / h, mass_of_bending(line, -gap, since)
-        line.due = -secant_stiffness(line, -gap) * since * h * late - bent
-        sprung = (1 - late) * sprung + bent * rate / h
+        late, mass = 0.5 * (h - since) / h, mass_of_nonlinear_spring(line, -gap, since)
+        line.due = -secant_stiffness(line, -gap) * since * h * late - mass
+        sprung = (1 - late) * sprung + mass * rate / h
         return sprung, sprung - (since / h + 0.5) * line.c * rate
     return sprung, push
 
 
 @inlined
-def mass_of_bending(line: Row, depth: float, since: float) -> float:
+def mass_of_nonlinear_spring(line: Row, depth: float, since: float) -> float:
     """What a spring that is not linear adds to m [kg], from its overlap [m] and the time since it closed or until it
     opened [s].
     """
-    bent: float = 0.5 * (secant_stiffness(line, depth) - equivalent_stiffness(line, depth)) * since * since
-    return bent
+    mass: float = 0.5 * (secant_stiffness(line, depth) - equivalent_stiffness(line, depth)) * since * since
+    return mass
 
 
 @inlined
@@ -84,7 +84,7 @@ def forces_of_leaving(line: Row, gap: float, rate: float, h: float) -> tuple[flo
             return sprung, push
         since = line.depth / rate
         stiffness = secant_stiffness(line, line.depth)
-        mass = 0.5 * stiffness * since * (h - since) + mass_of_bending(line, line.depth, since)
+        mass = 0.5 * stiffness * since * (h - since) + mass_of_nonlinear_spring(line, line.depth, since)
         if force_before == 0:  # the dashpot has held the spring back, and takes what it held
             return -2 * mass * rate / h, 0.0
         sprung, line.due = -mass * rate / h, mass

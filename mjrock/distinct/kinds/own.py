@@ -1,7 +1,7 @@
 """Own laws of joints, see `own_law`: a class of a user's file gives the stress of each line.
 
-A law that only presses sets the spring of its line at each pose: `k` is the secant stiffness, and `bent` the stiffness
-that a spring of the same energy has beyond it. Friction, dashpots, touches and the ends of faces are then those of a
+A law that only presses sets the spring of its line at each pose: `k` is the secant stiffness, and `k_excess` what a
+linear spring of the same energy has beyond it. Friction, dashpots, touches and the ends of faces are then those of a
 dry line. A law that also pulls acts here, with friction by its own push, until it has lost all of its tension; from
 then on its line only presses.
 
@@ -34,7 +34,7 @@ from ..thread import add_line_force
 from .law import JointLaw
 from .link import Table
 
-DEEPER = 2.0
+CLOSING_OF_STABLE_STEPS = 2.0
 """Closing for which steps are stable, over the largest at rest [-]."""
 EXHAUSTED_TENSION = math.exp(-9)
 """Share of its tension that is left of a law which counts as one that pulls no more [-]."""
@@ -43,6 +43,8 @@ NO_RATE = 1e-12
 NO_CLOSING = 1e-20
 """Closing below which the spring of a line is not changed [m]."""
 SIGNATURE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_double, ctypes.c_double)
+ERRORS_OF_LAWS: list[Exception] = []
+"""What own laws that run as plain Python have raised in this run."""
 AS_PYTHON = "laws"
 """Value of MJROCK_INTERPRET with which own laws run as plain Python in compiled loops."""
 
@@ -59,7 +61,7 @@ def _choice(values: Any) -> Any:
     return called
 
 
-answer = by_type(_choice)
+call_law = by_type(_choice)
 
 
 @cache
@@ -75,7 +77,8 @@ def function_of(kind: Any) -> Any:
         room = np.ctypeslib.as_array(ctypes.cast(values, ctypes.POINTER(ctypes.c_double)), (ROOM,))
         try:
             plain(room[: row.itemsize // 8].view(row).view(np.recarray)[0], closing, rate)
-        except Exception:  # nothing can be raised through the loops, which end where a number is not finite
+        except Exception as error:  # nothing can be raised through the loops, which end where a number is not finite
+            ERRORS_OF_LAWS.append(error)
             room[OF_STRESS] = math.nan
 
     return SIGNATURE(text)
@@ -111,7 +114,7 @@ class OwnLaws(JointLaw, Table):
                 law.rows["joint"][which] = i
                 area = np.asarray(scene.contacts.area)[which]
                 deepest = max(float(scene.bears[which].max()), bond.closing_at(weight / float(area.sum())))
-                k, c = bond.stiffest(DEEPER * deepest)
+                k, c = bond.stiffest(CLOSING_OF_STABLE_STEPS * deepest)
                 lines["k"][which] = np.where(law.rows["pulls"][which] > 0, 0.0, k * area)
                 law.rows["stiffest"][which] = k * area
                 law.rows["strongest"][which] = c * area if bond.damps else law.rows["c"][which]
@@ -143,9 +146,9 @@ class OwnLaws(JointLaw, Table):
                 if law.pulls > 0 and law.values[OF_LOST] > 1 - EXHAUSTED_TENSION:
                     press_only(books, line, law)
                 if law.pulls > 0:
-                    hold_by_law(system, books, line, law, h)
+                    add_force_of_law(system, books, line, law, h)
                 else:
-                    press_by_law(system, books, line, law, h)
+                    set_spring_of_law(system, books, line, law, h)
 
     @inlined
     def stored(self) -> tuple[float, float]:
@@ -169,7 +172,7 @@ class OwnLaws(JointLaw, Table):
         return bool(row.k > 0 and row.pulls > 0)
 
     def springs(self) -> dict[str, Array]:
-        """Springs and dashpots for the length of a step: the largest up to `DEEPER` times the closing at rest."""
+        """The largest springs and dashpots up to `CLOSING_OF_STABLE_STEPS`, for the length of a step."""
         dry = super().springs()
         return dry | {"k": np.asarray(self.rows["stiffest"]), "c": np.asarray(self.rows["strongest"])}
 
@@ -227,9 +230,9 @@ class OwnLaws(JointLaw, Table):
         lines["c"][: len(has_law)][has_law & (laws["damps"] > 0)] = 0.0
         for i in np.flatnonzero(has_law & (depth[: len(has_law)] > 0)).tolist():
             law, closing = laws[i], float(depth[i])
-            answer(law.values, law.address, closing, 0.0)
+            call_law(law.values, law.address, closing, 0.0)
             lines["k"][i] = law.area * law.values[OF_STRESS] / closing
-            lines["bent"][i] = 2 * law.area * law.values[OF_ENERGY] / closing**2 - lines["k"][i]
+            lines["k_excess"][i] = 2 * law.area * law.values[OF_ENERGY] / closing**2 - lines["k"][i]
 
     def has_changed(self, bonds: tuple[Any, ...]) -> Flags:
         """Those whose numbers are not those of a new line."""
@@ -258,11 +261,11 @@ def press_only(books: Books, line: Row, law: Row) -> None:
 
 
 @inlined
-def update_by_law(law: Row, books: Books, closing: float, rate: float, h: float) -> None:
+def evaluate_law(law: Row, books: Books, closing: float, rate: float, h: float) -> None:
     """Evaluate a law at a closing [m] that grows at a rate [m/s], and book the energy that its memory has dissipated
     since the last pose, a time h ago [s]."""
     stress, energy = law.values[OF_STRESS], law.values[OF_ENERGY]
-    answer(law.values, law.address, closing, rate)
+    call_law(law.values, law.address, closing, rate)
     if law.values[OF_DISSIPATED] != 0 and h > 0:
         work = 0.5 * h * (stress + law.values[OF_STRESS]) * rate
         dissipated = law.area * (work - (law.values[OF_ENERGY] - energy))
@@ -273,7 +276,7 @@ def update_by_law(law: Row, books: Books, closing: float, rate: float, h: float)
 
 
 @inlined
-def press_by_law(system: System, books: Books, line: Row, law: Row, h: float) -> None:
+def set_spring_of_law(system: System, books: Books, line: Row, law: Row, h: float) -> None:
     """Give a line the spring and the dashpot that its law has at the pose."""
     meet = meeting(system, line)
     if meet.gap >= 0 and (law.remembers == 0 or meet.past):
@@ -281,11 +284,11 @@ def press_by_law(system: System, books: Books, line: Row, law: Row, h: float) ->
         return
     rate = -dot(meet.normal, relative_velocity(system.bodies, line, system.supports, meet))
     closing = -meet.gap
-    update_by_law(law, books, closing, rate, h)
+    evaluate_law(law, books, closing, rate, h)
     if closing > NO_CLOSING:
         energy, force = stored(line, -line.depth), normal_force(line, -line.depth, 0.0)
         line.k = law.area * law.values[OF_STRESS] / closing
-        line.bent = 2 * law.area * law.values[OF_ENERGY] / (closing * closing) - line.k
+        line.k_excess = 2 * law.area * law.values[OF_ENERGY] / (closing * closing) - line.k
         if law.damps > 0:
             line.c = law.area * law.values[OF_DAMPING] / rate if abs(rate) > NO_RATE else 0.0
         if meet.past or line.past == 1:  # `lost_past_face_edge` takes the spring of this pose for that of the last one
@@ -295,13 +298,13 @@ def press_by_law(system: System, books: Books, line: Row, law: Row, h: float) ->
 
 
 @inlined
-def hold_by_law(system: System, books: Books, line: Row, law: Row, h: float) -> None:
+def add_force_of_law(system: System, books: Books, line: Row, law: Row, h: float) -> None:
     """Add the forces of a law that pulls, with its friction."""
     bodies, supports = system.bodies, system.supports
     meet = where_friction_rubs(meeting(system, line))
     velocity = relative_velocity(bodies, line, supports, meet)
     rate, slip = dot(meet.normal, velocity), along_face(meet.normal, velocity)
-    update_by_law(law, books, -meet.gap, -rate, h)
+    evaluate_law(law, books, -meet.gap, -rate, h)
     damping = law.area * law.values[OF_DAMPING]
     if law.damps == 0:
         damping = -law.c * rate

@@ -40,7 +40,7 @@ def _call(
 
 
 def called(values: Any, address: int, closing: float, rate: float) -> None:
-    """Let a law answer whose text has an address, see `own.answer`."""
+    """Let a law answer whose text has an address, see `own.call_law`."""
     _call(values, address, closing, rate)
 
 

@@ -14,7 +14,7 @@ from ...rows import Fields, Row, Rows, integers
 from ...scene.scene import Scene
 from ..system import Books, System
 from .link import Kind, Named, Table, book_support, lengthening, pull, push_apart
-from .own import address_of, answer
+from .own import address_of, call_law
 
 
 class OwnLinks(Kind, Table):
@@ -66,7 +66,7 @@ class OwnLinks(Kind, Table):
             rate = lengthening(link, system, now)
             ahead = rate + (link.steps_ahead if h > 0 else 0.0) * (rate - link.rate)
             bears, energy_before = link.values[OF_STRESS], link.values[OF_ENERGY]
-            answer(link.values, link.address, now.length - link.reach, ahead)
+            call_law(link.values, link.address, now.length - link.reach, ahead)
             dashpot_force = link.values[OF_DAMPING]
             books.links[link.account] += 0.5 * h * (link.dashpot_force + dashpot_force) * rate
             if link.values[OF_DISSIPATED] != 0 and h > 0:

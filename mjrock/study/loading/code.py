@@ -39,10 +39,11 @@ IN_FORMULA = re.compile(r"(?<![^\W_])(?:OF|SHARE|PERIOD|DAMPING|BEHAVIOUR)(?![^\
 
 
 class StepOutput(NamedTuple):
-    """How a value of the check is written: its unit, and its decimals in a table."""
+    """How a value of the check is written: its unit, its decimals in a table, and what the value is of."""
 
     unit: str
     digits: int
+    of: str = "mechanism"
 
 
 CHECK_STEPS = {
@@ -51,14 +52,16 @@ CHECK_STEPS = {
     "linear_tied": StepOutput("g", 4), "peak": StepOutput("g", 4), "floor_peak": StepOutput("g", 4),
     "free_peak": StepOutput("g", 4), "linear_ratio": StepOutput("", 2), "floor_linear_ratio": StepOutput("", 2),
     "free_linear_ratio": StepOutput("", 2), "damage": StepOutput("g", 4), "damage_ratio": StepOutput("", 2),
-    "elastic_period": StepOutput("s", 3), "d_0": StepOutput("m", 4), "yields": StepOutput("m", 4),
-    "breaks": StepOutput("m", 4), "capacity": StepOutput("m", 4), "period": StepOutput("s", 3),
-    "demand": StepOutput("m", 4), "ratio": StepOutput("", 2), "ground_ratio": StepOutput("", 2),
+    "elastic_period": StepOutput("s", 3), "d_0": StepOutput("m", 4), "yields": StepOutput("m", 4, "tie"),
+    "breaks": StepOutput("m", 4, "tie"), "capacity": StepOutput("m", 4, "limit state"),
+    "period": StepOutput("s", 3, "limit state"), "demand": StepOutput("m", 4, "limit state"),
+    "ratio": StepOutput("", 2, "limit state"), "ground_ratio": StepOutput("", 2, "ground motion"),
 }  # fmt: skip
 """The steps of the check. The key of one of the whole mechanism is the name of its attribute of `MechanismCheck`, that
 of a limit state the name of its attribute of `LimitState`."""
-OF_MECHANISM = tuple(CHECK_STEPS)[: 1 + tuple(CHECK_STEPS).index("d_0")]
-OF_LIMIT_STATE = "capacity", "period", "demand", "ratio"
+OF_MECHANISM, OF_LIMIT_STATE = (
+    tuple(key for key, output in CHECK_STEPS.items() if output.of == of) for of in ("mechanism", "limit state")
+)
 """The keys of the steps of a mechanism, and of those of a limit state."""
 
 

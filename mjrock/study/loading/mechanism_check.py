@@ -228,26 +228,26 @@ class MechanismCheck:
         rows = [("what moves", "", named(self.moving))] if self.moving else []
         rows += [("end of the curve, taken for d_0", "", self.ended)] if self.ended else []
         for step in self.steps:
-            what, note = self.code.step(step.key, step.of).plain, step.clause
-            if step.key.endswith("linear_ratio") and self._linear is not None:
-                note = self._linear.label if self.counts("linear") else NOT_COUNTED
-            elif step.key == "damage_ratio":
-                note = self.verdicts[-1].label
-            elif step.key == "ratio" and not self.counts("nonlinear"):
-                note = NOT_COUNTED
-            elif step.key == "ratio":
-                note = "see below" if self.is_of_start(step.of) else self._nonlinear(step.of).label
-                if gone := self.broken_before(step.of):
-                    note += f", without {', '.join(gone)}, broken"
-            elif step.key == "ground_ratio" and self.counts("nonlinear"):
-                note = f"{self._nonlinear(step.of).label}, {note}"
-            value = (
-                ratio_text(step.value)
-                if step.key.endswith("ratio")
-                else f"{step.value:.{CHECK_STEPS[step.key].digits}f}"
-            )
-            rows.append((what + (f" [{step.unit}]" if step.unit else ""), value, note))
+            label = self.code.step(step.key, step.of).plain + (f" [{step.unit}]" if step.unit else "")
+            is_ratio, digits = step.key.endswith("ratio"), CHECK_STEPS[step.key].digits
+            rows.append((label, ratio_text(step.value) if is_ratio else f"{step.value:.{digits}f}", self._note(step)))
         return rows
+
+    def _note(self, step: Step) -> str:
+        """The verdict of a ratio, or the clause of another step."""
+        if step.key == "damage_ratio" and self.damage is not None:
+            return self._damaged(self.damage).label
+        if step.key.endswith("linear_ratio") and self._linear is not None:
+            return self._linear.label if self.counts("linear") else NOT_COUNTED
+        if step.key == "ground_ratio" and self.counts("nonlinear"):
+            return f"{self._nonlinear(step.of).label}, {step.clause}"
+        if step.key != "ratio":
+            return step.clause
+        if not self.counts("nonlinear"):
+            return NOT_COUNTED
+        verdict = "see below" if self.is_of_start(step.of) else self._nonlinear(step.of).label
+        broken = self.broken_before(step.of)
+        return f"{verdict}, without {', '.join(broken)}, broken" if broken else verdict
 
     def __repr__(self) -> str:
         ratios = ", ".join(

@@ -22,12 +22,15 @@ EDITS = {
         ),
     ),
     LAWS + "joint_law.py": (
-        ("    bent: Any = 0.0\n", "    bent: Any = 0.0\n    stiffening: Any = 0.0\n"),
+        ("    k_excess: Any = 0.0\n", "    k_excess: Any = 0.0\n    stiffening: Any = 0.0\n"),
         (
             'over its depth [N/m], at a depth [m]."""\n    return row.k\n',
             'over its depth [N/m], at a depth [m]."""\n    return row.k * (1.0 + row.stiffening * depth)\n',
         ),
-        ("    return row.k + row.bent\n", "    return row.k * (1.0 + 2.0 / 3.0 * row.stiffening * depth) + row.bent\n"),
+        (
+            "    return row.k + row.k_excess\n",
+            "    return row.k * (1.0 + 2.0 / 3.0 * row.stiffening * depth) + row.k_excess\n",
+        ),
         (
             'with the depth [N/m], at a depth [m]."""\n    return row.k\n',
             'with the depth [N/m], at a depth [m]."""\n    return row.k * (1.0 + 2.0 * row.stiffening * depth)\n',

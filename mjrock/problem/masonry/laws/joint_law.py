@@ -5,7 +5,7 @@ pose of rest take the law from here, and limit analysis takes its limit of frict
 its own, see `engine.rows`.
 
 The spring along the normal is linear, or one whose secant stiffness k is that of the pose, see `kinds.own`: the linear
-spring that stores the same energy there is stiffer by `bent`. The six functions from `secant_stiffness` to
+spring that stores the same energy there is stiffer by `k_excess`. The six functions from `secant_stiffness` to
 `depth_of_energy` define this spring, and explicit steps and the search for the pose of rest have no other one.
 
 A new number of a joint is a field of `Law` here and one of the same name, with its range, in `dry.Dry`. The scene and
@@ -35,17 +35,17 @@ class Law(NamedTuple):
         k, c: spring and dashpot along the normal [N/m, N s/m].
         k_s: spring along the face [N/m].
         friction: coefficient of friction [-].
-        bent: stiffness of the linear spring that holds the same energy, less k [N/m].
+        k_excess: stiffness of the linear spring that holds the same energy, less k [N/m].
     """
 
     k: Any = 0.0
     c: Any = 0.0
     k_s: Any = 0.0
     friction: Any = 0.0
-    bent: Any = 0.0
+    k_excess: Any = 0.0
 
 
-EXTENSIVE = ("k", "c", "k_s", "bent")
+EXTENSIVE = ("k", "c", "k_s", "k_excess")
 """Numbers of the law that a part of the area of a line has in proportion. It has the others as they are."""
 INTENSIVE = tuple(name for name in Law._fields if name not in EXTENSIVE)
 """Those others: the friction, and the further numbers of a `Dry`, for which masonry has no keyword."""
@@ -70,7 +70,7 @@ def secant_stiffness(row: LawRow, depth: float) -> Any:
 @inlined
 def equivalent_stiffness(row: LawRow, depth: float) -> Any:
     """Stiffness of the linear spring that holds the same energy at a depth [N/m]."""
-    return row.k + row.bent
+    return row.k + row.k_excess
 
 
 @inlined
