@@ -322,7 +322,7 @@ def test_a_law_that_fails_in_a_run_is_named_with_its_joint():
 def test_what_a_law_as_plain_python_raises_is_in_the_error_of_the_run(monkeypatch):
     """Beyond the closings for which it was checked."""
     monkeypatch.setenv("MJROCK_INTERPRET", "laws")
-    law = law_of(stress=lambda self, u: self.k_n * u / (u < 2e-3) if u > 0 else 0.0)
+    law = law_of(stress=lambda self, u: self.k_n * u * (1 // int(u < 2e-3)) if u > 0 else 0.0)
     with pytest.raises(RuntimeError, match=r"the law Mine of .*ground.* a law raised ZeroDivisionError"):
         run(replace(BED, law=law()), 0.02, -5.0)
 
