@@ -160,11 +160,11 @@ def mechanisms_of(reader: Reader, top: Table) -> dict[str, Mechanism]:
     if not isinstance(tables, Table) or not all(isinstance(value, Table) for value in tables.values.values()):
         reader.refusal(("mechanisms",), "{place} is no table of tables; write [mechanisms.NAME] for each")
         return {}
-    shared, used = top.without("mechanisms"), set[str]()
+    shared, taken = top.without("mechanisms"), set[str]()
     mechanisms = dict[str, Mechanism | None]()
     for name, table in tables.values.items():
-        mechanisms[name] = _mechanism(reader, table.over(shared), set(table.values), used)
-    for key in shared.values.keys() - used:
+        mechanisms[name] = _mechanism(reader, table.over(shared), set(table.values), taken)
+    for key in shared.values.keys() - taken:
         reader.refusal((key,), "{place} is not known here: no mechanism takes it")
     return _without_faulty(mechanisms)
 
@@ -173,31 +173,31 @@ def _without_faulty(mechanisms: Mapping[str, Mechanism | None]) -> dict[str, Mec
     return {name: mechanism for name, mechanism in mechanisms.items() if mechanism is not None}
 
 
-def _mechanism(reader: Reader, table: Table, own: set[str], used: set[str]) -> Mechanism | None:
+def _mechanism(reader: Reader, table: Table, own: set[str], taken: set[str]) -> Mechanism | None:
     """The mechanism of a table; None where something is wrong with it.
 
     Args:
-        reader: which keeps what is wrong.
-        table: with what it shares with others.
-        own: the keys that it has itself. One that is shared, and that it does not take, is left to the others.
-        used: to which those that it takes are added.
+        reader: the reader, which keeps what is wrong.
+        table: its table, with what it shares with others.
+        own: the keys of its own table. A shared key that is none of its arguments is left to the others.
+        taken: the keys that any mechanism takes, to which this one adds its own.
     """
     try:
         maker, rest = reader.choose_maker(table, MECHANISMS, "Case")
     except RefusedError:
-        used |= set(table.values)
+        taken |= set(table.values)
         return None
-    takes = {key_named(key) for key in maker.keys.values()} | set(SECTIONS)
-    used |= (takes | set(OWN_KEYS)) & set(table.values)
-    rest = rest.without(*(set(rest.values) - takes - own))
+    arguments = {key_named(key) for key in maker.keys.values()} | set(SECTIONS)
+    taken |= (arguments | set(OWN_KEYS)) & set(table.values)
+    rest = rest.without(*(set(rest.values) - arguments - own))
     options = _options(reader, rest, "check", CHECK)
     curve = _options(reader, rest, "limit_curve", CURVE)
     demand = reader.attempt(lambda: _demand(reader, rest, options))
     problem = reader.attempt(lambda: reader.make(rest.without(*SECTIONS), maker))
     if problem is None:
         return None
-    severe = next(iter(demand.values())) if isinstance(demand, Mapping) else demand
-    ground = severe.ground if isinstance(severe, FloorSpectrum) else severe
+    spectrum = next(iter(demand.values())) if isinstance(demand, Mapping) else demand
+    ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
     wall = getattr(case_of(problem), "block", None)
     shaking = reader.attempt(lambda: shaking_of(reader, rest, wall, ground))
     return Mechanism(problem, demand, options, curve, shaking or Shaking(), table.place)

@@ -133,7 +133,7 @@ def setup_of_masonry(problem: Problem, case: MasonryCase, scene: Scene, course: 
     unguided = longest_step(system._replace(links=passive)) if has_passive_links else at_rest.limit
     guide(system, case)
     search = at_rest.search
-    step_length = StepLength.of_masonry(system, unguided, search.longest, search.impacts)
+    step_length = StepLength.of_masonry(system, unguided, search.longest_steps, search.flat_impacts)
     moving_blocks = tuple(support.block for support in case.supports)
     return Setup(
         problem,

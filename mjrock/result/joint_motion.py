@@ -29,14 +29,14 @@ class JointMotion:
     Args:
         opening: largest gap of each joint [m], shape (joints,). Fixed blocks are where supports have moved them.
         sliding: largest distance by which each joint has slid from rest, at its most pressed line [m], shape (joints,).
-        fallen: when each block that fell did [s], by its name, the first first. A block has fallen when, as the run
+        fallen: when each block that fell did [s], by its name, the earliest first. A block has fallen when, as the run
             ends, it is tilted by more than 45 degrees, as one is that rolls over an edge, or no joint that holds
             connects it with a fixed block and it lies lower than at rest by more than half its height. A joint holds
             nothing where one block has slid by more than its width, or where its faces are apart by more than a tenth
             of its width at the nearest point. In MuJoCo, where faces have no end, a block that has slid off its joints
             counts as fallen at once.
-        cracked: when each mortared joint that cracked did [s], by its name, the first first. A joint has cracked when
-            all its lines have less than half of their bond.
+        cracked: when each mortared joint that cracked did [s], by its name, the earliest first. A joint has cracked
+            when all its lines have less than half of their bond.
     """
 
     opening: Array
@@ -62,7 +62,7 @@ PARTED = 0.1
 
 
 def fallen_blocks(masonry: Masonry, t: Array, parted: Flags, tilt: Array, drop: Array) -> dict[str, float]:
-    """When each block that fell did [s], by its name, the first first.
+    """When each block that fell did [s], by its name, the earliest first.
 
     A block has fallen when, as the run ends, it is tilted by more than 45 degrees, or no joint that holds connects it
     with a fixed block and it lies lower than at rest by more than half its height. It fell when this became so for

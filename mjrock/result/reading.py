@@ -65,7 +65,7 @@ class ContactHistory(NamedTuple):
     Args:
         widest_gap: the widest gap of each contact in any step [m], shape (m,).
         has_left_joints: whether blocks have left joints.
-        cracked: when each mortared joint that cracked did [s], by its name, the first first.
+        cracked: when each mortared joint that cracked did [s], by its name, the earliest first.
     """
 
     widest_gap: Array

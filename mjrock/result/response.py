@@ -302,12 +302,12 @@ class Response(NotebookPicture):
 
     @property
     def fallen(self) -> Mapping[str, float]:
-        """When each block that fell did [s], by its name, the first first, see `JointMotion`."""
+        """When each block that fell did [s], by its name, the earliest first, see `JointMotion`."""
         return self.of_joints.fallen
 
     @property
     def cracked(self) -> Mapping[str, float]:
-        """When each mortared joint that cracked did [s], by its name, the first first, see `JointMotion`."""
+        """When each mortared joint that cracked did [s], by its name, the earliest first, see `JointMotion`."""
         return self.of_joints.cracked
 
     @property

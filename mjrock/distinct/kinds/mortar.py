@@ -123,7 +123,7 @@ class Bonds(JointLaw, Table):
         return self
 
     def cracked(self, scene: Scene) -> dict[str, float]:
-        """Those of which all bonds have lost half, the first first."""
+        """Those of which all bonds have lost half, the earliest first."""
         when, contacts = {}, scene.contacts
         for i in np.flatnonzero([type(bond) is Bond and bond.tension > 0 for bond in contacts.bonds]):
             of_joint = self.rows[contacts.joint == i]

@@ -93,8 +93,8 @@ class ContactSearch:
         system: its bodies where they stand, and the lines of its joints. The account of the lines that are found
             comes after those of the joints.
 
-    `longest` are the longest stable steps of blocks on the springs that they have beyond their joints, and `impacts`
-    flat ones of the pairs that are given, see `pair_law`.
+    `longest_steps` are the longest stable steps of blocks on the springs that they have beyond their joints, and
+    `flat_impacts` those of the pairs that are given, see `pair_law`.
     """
 
     examine = staticmethod(is_outdated)  # until a run knows the types of its arguments
@@ -112,8 +112,8 @@ class ContactSearch:
         self.finder = Finder(solids, flat=flat)
         self.law = PairLaw.of_joints(scene, system.lines)
         inverse_mass = np.append(1 / scene.bodies.mass, 0.0)[body]
-        self.impacts, slowest = self.law.meetings(inverse_mass)
-        self.longest = longest_steps_of(solids, self.law, slowest, system)
+        self.flat_impacts, slowest = self.law.meetings(inverse_mass)
+        self.longest_steps = longest_steps_of(solids, self.law, slowest, system)
         below, above = np.array([(each.below, each.above) for each in joints]).T
         of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
@@ -123,7 +123,7 @@ class ContactSearch:
         self.jointed, points = _jointed(scene, self.finder, of)
         self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
         self.finder.points = np.maximum.reduceat(points, first)
-        self.kind, start = system.lines.dtype, self.poses(system)
+        self.line_type, start = system.lines.dtype, self.poses(system)
         interval = longest_interval(self.sizes[self.blocks.free])
         self.limits = Limits(start, self._limits(start), VALID_DISPLACEMENT * self.sizes, interval)
         blocks = np.column_stack(np.divmod(self.law.jointed, self.count))
@@ -235,7 +235,7 @@ class ContactSearch:
             for of_joints, found_ones in ((0.0, state.slack), (1.0, state.share))
         )
         gone = Lines.unwritten(chosen(lines, which), slack)
-        new = Lines.unwritten(rows(self.kind, size, group=self.group, margin=np.inf), np.empty(size))
+        new = Lines.unwritten(rows(self.line_type, size, group=self.group, margin=np.inf), np.empty(size))
         before = account(system, which, gone.depth)
         soft = (share < 1) & (gone.depth > 0)
         share = least_among(number, pair[which][soft], share[soft])

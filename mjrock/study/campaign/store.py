@@ -136,6 +136,7 @@ class Store:
         return len(rows)
 
     def _open(self, writing: bool) -> None:
+        """Verify that the file is a store and sound, and make its table in a new one."""
         (application,) = self._rows.execute("PRAGMA application_id").fetchone()
         (tables,) = self._rows.execute("SELECT count(*) FROM sqlite_master").fetchone()
         if application != APPLICATION and (tables or not writing):
