@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,6 +38,14 @@ BEND = 1e-9
 """Sine of a corner that is too flat to tell whether it turns inwards [-]."""
 MOST_VERTICES = 1000
 """Most vertices of a block."""
+
+
+class AreaMoments(NamedTuple):
+    """Area of an outline [m2], its centroid x, z [m], and its polar second moment of area about it [m4]."""
+
+    area: float
+    centroid: Array
+    polar: float
 
 
 @dataclass(frozen=True)
@@ -126,21 +134,18 @@ class Polygon:
         return False
 
     @cached_property
-    def _moments(self) -> tuple[float, float, float, float]:
-        """Area [m2], centroid x, z [m] and polar second moment of area about it [m4].
-
-        Sums over the triangles between an edge and the first vertex, which is the origin here.
-        """
+    def _moments(self) -> AreaMoments:
+        """Sums over the triangles between an edge and the first vertex, which is the origin here."""
         origin, (p, q, twice) = self.corners[0], _triangles(self.corners)
         area = 0.5 * float(twice.sum())
         x, z = (twice[:, None] * (p + q)).sum(axis=0) / (6 * area)
         about_origin = float((twice * (p * p + p * q + q * q).sum(axis=1)).sum()) / 12
-        return area, float(origin[0] + x), float(origin[1] + z), about_origin - area * float(x * x + z * z)
+        return AreaMoments(area, origin + (x, z), about_origin - area * float(x * x + z * z))
 
     @property
     def area(self) -> float:
         """Area of the outline [m2]."""
-        return self._moments[0]
+        return self._moments.area
 
     @property
     def mass(self) -> float:
@@ -150,12 +155,12 @@ class Polygon:
     @property
     def centroid(self) -> Array:
         """x and z of the centroid at rest [m], shape (2,)."""
-        return np.array(self._moments[1:3])
+        return self._moments.centroid.copy()
 
     @property
     def inertia(self) -> float:
         """Moment of inertia about the centroid [kg m2]."""
-        return self.density * self.length * self._moments[3]
+        return self.density * self.length * self._moments.polar
 
     def left_at(self, z: float) -> float:
         """The left end of the block at a height z [m], x [m]; at the end of its range where z lies beyond that."""
