@@ -138,9 +138,9 @@ class Polygon:
         """Sums over the triangles between an edge and the first vertex, which is the origin here."""
         origin, (p, q, twice) = self.corners[0], _triangles(self.corners)
         area = 0.5 * float(twice.sum())
-        x, z = (twice[:, None] * (p + q)).sum(axis=0) / (6 * area)
+        offset = (twice[:, None] * (p + q)).sum(axis=0) / (6 * area)
         about_origin = float((twice * (p * p + p * q + q * q).sum(axis=1)).sum()) / 12
-        return AreaMoments(area, origin + (x, z), about_origin - area * float(x * x + z * z))
+        return AreaMoments(area, origin + offset, about_origin - area * float((offset * offset).sum()))
 
     @property
     def area(self) -> float:
