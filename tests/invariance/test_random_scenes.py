@@ -16,16 +16,16 @@ from tests.invariance.random_scenes import DENSITY, LATER, PLACES, draw, on_a_sl
 from tests.invariance.runs import apart, extruded, measured_in_the_plane, motion_of, softened, solve
 
 FIRST, LAST, ADDED = 1000, 1150, 50
-"""Seeds from the first to the last, and as many from `LATER` on, of which slow scenes are chosen."""
+"""Seeds from the first to the last, and as many from `LATER` on, whose kinds and actions slow scenes have."""
 SLOW = (
-    *(1002, 1012, 1013, 1015, 1016, 1019, 1020, 1024, 1027, 1029, 1030, 1031, 1032, 1034, 1035, 1036, 1037, 1038, 1041),
-    *(1042, 1045, 1046, 1047, 1048, 1050, 1052, 1053, 1055, 1056, 1057, 1058, 1060, 1061, 1065, 1070, 1075, 1080, 1081),
-    *(1084, 1085, 1087, 1091, 1092, 1093, 1094, 1095, 1096, 1097, 1098, 1099, 1101, 1102, 1104, 1109, 1111, 1113, 1116),
-    *(1120, 1122, 1123, 1126, 1127, 1130, 1131, 1132, 1133, 1134, 1135, 1137, 1140, 1143, 1144, 1149),
-    *(LATER + i for i in (5, 9, 10, 11, 12, 13, 15, 16, 17, 25, 26, 27, 28, 29, 30, 32, 34, 36, 41, 42, 44, 45, 47)),
+    *(1000, 1003, 1004, 1005, 1009, 1019, 1042, 1046, 1049, 1052, 1061, 1065, 1066, 1080, 1087, 1092, 1122, 1126, 1132),
+    *(1134, 1135, 1152, 1159, 1160, 1167, 1175, 1186, 1187, 1192, 1199, 1202, 1212, 1213, 1248, 1258, 1262, 1265),
+    *(LATER + i for i in (10, 15, 16, 17, 18, 21, 26, 27, 28, 32, 34, 36, 42, 44, 47, 50, 52, 65, 75, 76)),
+    *(LATER + i for i in (77, 83, 93, 98, 104, 109, 111, 114)),
 )
-"""Seeds of slow scenes. They draw twice, where two of all do, each kind of scene, device, action and outcome in each
-place and by each solver, and each invariance, in the shortest time. `python -m tests.invariance` runs any others."""
+"""Seeds of slow scenes. They draw twice, where two of the seeds above do, each kind of scene, device, action and outcome
+in each place and by each solver, and each invariance, in places that it applies to, in the shortest time. Few of them
+are refused. `python -m tests.invariance` runs any others."""
 CHUNK, DRAWN = 5, 3
 """How many slow scenes are one test, and how many invariances each is under."""
 EVERY_DAY = (2, 5, 7, 12, 22, LATER + 21, LATER + 27)
@@ -63,7 +63,7 @@ SAME = ("twice", "after_another", "in_threads", "from_the_middle", "mirrored", "
 
 
 @pytest.mark.parametrize("glued", [False, True])
-@pytest.mark.parametrize("seed", [5, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (3, 6, 9, 11, 14))])
+@pytest.mark.parametrize("seed", [5, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (3, 6, 9, 16, 119))])
 def test_a_scene_whose_joints_have_own_laws(seed, glued):
     """Joints that stiffen, and glue with a memory, in the plane and in space, as stacks and walls and where blocks fall
     on contacts that are found."""
