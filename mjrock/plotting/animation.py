@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
+from io import BytesIO
 from pathlib import Path
 from shutil import which
 from typing import Any, ClassVar
@@ -178,6 +179,12 @@ class MovieWriter(FFMpegWriter):
             return str(import_module("imageio_ffmpeg").get_ffmpeg_exe())
         return "ffmpeg"
 
+    def hold(self, count: int) -> None:
+        """Write the figure as it is now, for a number of frames; it is drawn once."""
+        frame = BytesIO()
+        self.fig.savefig(frame, format=self.frame_format, dpi=self.dpi)
+        self._proc.stdin.write(count * frame.getvalue())  # type: ignore[attr-defined]
+
 
 def animate(
     response: Response,
@@ -260,8 +267,8 @@ def write(figure: Figure, update: Update, count: int, path: Path, writer: GifWri
         for frame in counted(range(count), path.name, "frames"):
             update(frame)
             writer.grab_frame()
-        for _ in range(0 if isinstance(writer, GifWriter) else round(LAST_FRAME_LONGER * writer.fps)):
-            writer.grab_frame()  # a GIF gives its last frame a time instead
+        if isinstance(writer, MovieWriter):  # a GIF gives its last frame a time instead
+            writer.hold(round(LAST_FRAME_LONGER * writer.fps))
     return path
 
 

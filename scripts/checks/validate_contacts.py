@@ -201,7 +201,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             e = mr.Restitution.from_geometry(one.wall)
             if mr.CALIBRATED_BED.covers(one.wall, e, one.k_base, one.k_side, one.amplitude):
                 beds.append(one)
-    beds = beds[: 4 if args.quick else 3 * args.count]
+    beds = beds[: 2 if args.quick else 3 * args.count]
 
     layouts, frictions = ((2,), FRICTIONS[1:3]) if args.quick else ((2, 16), FRICTIONS)
     released = [replace(one, amplitude=phi) for one in ones for phi in AMPLITUDES]

@@ -96,7 +96,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     ]
     text = cli.table(["step [ms]", *(f"{h * 1e3:g}" for h in steps), "order"], rows)
     resolved = RESOLVED[1:3] if args.quick else RESOLVED
-    lines = scatter(resolved, 2 if args.quick else 24)
+    lines = scatter(resolved, 1 if args.quick else 24)
     text += "\n\nscatter of |e| at a fixed step\n" + cli.table(["walls", "omega h", *map(str, resolved)], lines)
     cli.report(out / "convergence", text)
 

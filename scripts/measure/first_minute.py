@@ -94,12 +94,13 @@ def emptied(folder: Path) -> None:
         stored.unlink()
 
 
-def times(folder: Path, name: str) -> list[str]:
-    """First answer, full speed, compiled first, stored, plain Python: of one problem [s]."""
+def times(folder: Path, name: str, *, quick: bool) -> list[str]:
+    """First answer, full speed, compiled first, stored, plain Python: of one problem [s]. A quick run compiles once."""
     code = SET_UP.format(RUNS[name])
     emptied(folder)
     first, full = seconds(folder, code + UNTIL_STORED)
-    emptied(folder)
+    if not quick:
+        emptied(folder)
     (compiled,) = seconds(folder, code, MJROCK_INTERPRET="0")
     (stored,) = seconds(folder, code)
     plain = f"{seconds(folder, code, NUMBA_DISABLE_JIT='1')[0]:.2f}" if name != EXPLICIT else ""
@@ -154,7 +155,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     with tempfile.TemporaryDirectory() as made:
         folder = package(None, Path(made) / "now")
         for name in tqdm(names, desc="first runs", disable=None, leave=False):
-            rows.append([name, *times(folder, name)])
+            rows.append([name, *times(folder, name, quick=args.quick)])
         if args.clone:
             for revision in (args.against, "HEAD"):
                 rows.append([f"make demo of {revision}", f"{demo(revision, folder / 'clone'):.0f}", "", "", "", ""])

@@ -219,9 +219,9 @@ def main(argv: Sequence[str] | None = None) -> None:
         rows.append([task, f"{before * 1e3:.3f}", f"{now * 1e3:.3f}", f"{before / now:.1f}"])
 
     with tempfile.TemporaryDirectory() as folder:
-        there = ROOT if args.quick else unpacked(args.against, Path(folder))
         cores = 1 if args.quick else machine.cores()
-        versions = Version(ROOT, cores=cores), Version(there, cores=cores)
+        here = Version(ROOT, cores=cores)
+        versions = here, here if args.quick else Version(unpacked(args.against, Path(folder)), cores=cores)
         try:
             campaigns = list(CAMPAIGNS)[: 1 if args.quick else None]
             for task in tqdm((*CALLS, *SMALL_WALLS, *campaigns), desc="tasks", disable=None, leave=False):
@@ -244,7 +244,7 @@ def main(argv: Sequence[str] | None = None) -> None:
             first_runs = list(FIRST_RUNS.items())[: 1 if args.quick else None]
             firsts = {name: versions[0].run(FIRST.format(run), **cache) for name, run in first_runs}
         finally:
-            for version in versions:
+            for version in set(versions):
                 version.close()
     text = cli.table(["task", "before [ms]", "now [ms]", "times as fast"], rows)
     text += f"\n\nimport of the dependencies of before alone: {statistics.median(alone) * 1e3:.0f} ms"

@@ -112,7 +112,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Measure, print and draw."""
     args = cli.parser(__doc__, "stack_losses").parse_args(argv)
     out = cli.folder(args.out)
-    stiffnesses, blocks = (K_N[:1], BLOCKS[:2]) if args.quick else (K_N, BLOCKS)
+    stiffnesses, blocks = (K_N[:1], BLOCKS[1:2]) if args.quick else (K_N, BLOCKS)
     found: dict[tuple[str, float, bool], list[list[float]]] = {}
     rows: list[list[object]] = []
     changes = []

@@ -162,7 +162,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     out, rounds = cli.folder(args.out), 1 if args.quick else args.rounds
     with tempfile.TemporaryDirectory() as folder:
         there = speed.ROOT if args.quick else speed.unpacked(args.before, Path(folder))
-        versions = speed.Version(there, TASKS), speed.Version(speed.ROOT, TASKS)
+        trees = (there,) if args.quick else (there, speed.ROOT)
+        versions = [speed.Version(tree, TASKS) for tree in trees]
         try:
             steps_measured(out, versions, Path(folder), rounds, quick=args.quick)
             if args.quick or args.steps_only:

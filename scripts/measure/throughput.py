@@ -122,7 +122,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         return
     out = cli.folder(args.out)
     store, cores = out / "throughput.sqlite", machine.cores()
-    sizes = {"analytical": 1_000 if args.quick else 10_000, "MuJoCo": 20 if args.quick else 2_000}
+    sizes = {"analytical": 1_000} if args.quick else {"analytical": 10_000, "MuJoCo": 2_000}
     rows: list[list[object]] = []
     undisturbed = ""
     for solver, count in sizes.items():
@@ -135,11 +135,10 @@ def main(argv: Sequence[str] | None = None) -> None:
             with mr.Store(store) as file:
                 undisturbed = file.csv(timings=False)
         rows.append([name, len(grid), f"{one:.0f}", f"{all_cores:.0f}", f"{all_cores / one:.2f}", grid.growth()])
-    batch = mr.Grid(
-        fixed, seed=range(4 if args.quick else 20), pga=np.linspace(0.1, 0.8, 4 if args.quick else 20).tolist()
-    )
+    size = 2 if args.quick else 20
+    batch = mr.Grid(fixed, seed=range(size), pga=np.linspace(0.1, 0.8, size).tolist())
     one = len(batch) / timed(batch, store, workers=1)
-    with ProcessPoolExecutor(cores, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(1 if args.quick else cores, mp_context=get_context("spawn")) as pool:
         mr.campaign([shaken("analytical", 0, 7.0, 0.1, 0)] * cores, out / "warm.sqlite", executor=pool)
         (out / "warm.sqlite").unlink()
         warm = len(batch) / timed(batch, store, executor=pool)

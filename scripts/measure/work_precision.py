@@ -454,7 +454,7 @@ def main(argv: Sequence[str] | None = None) -> None:
                 f"{label}: the default (error of e {default.e_error:.1e}, RMS {default.rms:.1e}) takes {ratio} "
                 "at equal error"
             )
-    lines_out.append(walls_study(2 if args.quick else 30))
+    lines_out.append(walls_study(1 if args.quick else 30))
     if not args.quick:
         lines_out.append(profile())
     cli.report(out / "work_precision", "\n".join(lines_out), header, rows)

@@ -34,7 +34,7 @@ from scripts.shared.law_pictures import SYMBOLS
 LAYOUTS = {"CALIBRATED": 2, "CALIBRATED_BED": 16}
 STIFFEST = 1e11
 """Stiffness up to which corner lines are calibrated [N/m3], for walls as rocking theory has them."""
-QUICK = Plan(base_count=10, side_count=6, losses=(0.8, 1.0, 1.1), sides=(0.3, 0.4, 0.5))
+QUICK = Plan(base_count=6, side_count=4, losses=(0.8, 1.0, 1.1), sides=(0.3, 0.4, 0.5))
 
 
 def main(argv: Sequence[str] | None = None) -> None:

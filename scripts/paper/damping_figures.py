@@ -114,7 +114,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     store = out / "damping_figures.sqlite"
     table: list[list[object]] = []
     for name, (law, points, stiffest) in list(LAWS.items())[: 1 if args.quick else None]:
-        base, side = (4, 4) if args.quick else WALLS
+        base, side = (1, 1) if args.quick else WALLS
         plan = Plan(base_count=base, side_count=side, k_n=(K_N_RANGE[0], stiffest), seed=3)
         panels = []
         parts = ("base", law.base, plan.base_tasks(points)), ("side", law.side, plan.side_tasks(points, law.base))

@@ -168,7 +168,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     axes, lines = figure.subplots(len(answers), 3, squeeze=False), []
     for row, (name, (answer, camera)) in zip(axes, answers.items(), strict=True):
         view, last = View(answer, camera), len(answer.t) - 1
-        frames = np.linspace(0, last, FRAMES).astype(int)
+        frames = np.linspace(0, last, 2 if args.quick else FRAMES).astype(int)
         colours = [body.colour for body in view.shown]
         ways = {"mjrock": view.drawn, "PyVista": plotter(view, colours, show_edges=True)[1]}
         if not args.quick:  # a process chooses how MuJoCo draws before it imports it

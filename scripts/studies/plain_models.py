@@ -121,15 +121,15 @@ def figure_3(lines: list[str], rows: list[list[object]], steps: Sequence[float])
     return errors
 
 
-def table_2(lines: list[str], rows: list[list[object]], specimens: Sequence[paper.Specimen]) -> None:
-    """The specimens of Table 2 at omega h = 0.1."""
-    lines.append("Table 2, |e| of the first rebound at omega h = 0.1: law, plain model, contact points")
+def table_2(lines: list[str], rows: list[list[object]], specimens: Sequence[paper.Specimen], resolved: float) -> None:
+    """The specimens of Table 2 at an omega h."""
+    lines.append(f"Table 2, |e| of the first rebound at omega h = {resolved:g}: law, plain model, contact points")
     for specimen in tqdm(specimens, desc="Table 2", disable=None, leave=False):
         for one_sided in (True, False):
             wall = Released.of(
                 specimen.name, specimen.block, specimen.restitution, one_sided=one_sided, k_n=paper.K_N, rebounds=1
             )
-            h, law = 0.1 / wall.omega, wall.law()
+            h, law = resolved / wall.omega, wall.law()
             (plain, _), (points, _) = (wall.run(h, collisions=given) for given in (True, False))
             sides = "one-sided" if one_sided else "two-sided"
             three = first(law), first(plain), first(points)
@@ -137,15 +137,15 @@ def table_2(lines: list[str], rows: list[list[object]], specimens: Sequence[pape
                 f"  {specimen.name}, {sides}: "
                 + " ".join("-" if math.isnan(value) else f"{value:.4f}" for value in three)
             )
-            rows.append([f"{specimen.name}, {sides}", h, 0.1, *three])
+            rows.append([f"{specimen.name}, {sides}", h, resolved, *three])
 
 
 def table_1(
-    lines: list[str], rows: list[list[object]], walls: Sequence[Released]
+    lines: list[str], rows: list[list[object]], walls: Sequence[Released], every: Sequence[float]
 ) -> dict[float, tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """Walls drawn from Table 1: errors of the first rebound of both models, by omega h."""
+    """Walls drawn from Table 1: errors of the first rebound of both models, by every omega h."""
     errors = {}
-    for resolved in tqdm(RESOLVED, desc="Table 1", disable=None, leave=False):
+    for resolved in tqdm(every, desc="Table 1", disable=None, leave=False):
         off: list[list[float]] = []
         for wall in walls:
             h, law = resolved / wall.omega, wall.law()
@@ -194,9 +194,10 @@ def main(argv: Sequence[str] | None = None) -> None:
     """Run the walls."""
     args = cli.parser(__doc__, "plain_models").parse_args(argv)
     out, lines, rows = cli.folder(args.out), list[str](), list[list[object]]()
-    errors = figure_3(lines, rows, STEPS[1:2] if args.quick else STEPS)
-    table_2(lines, rows, paper.TABLE_2[:1] if args.quick else paper.TABLE_2)
-    walls = table_1(lines, rows, drawn_walls(1 if args.quick else WALLS))
+    steps, specimens, count, every = (STEPS[:1], 1, 1, RESOLVED[:1]) if args.quick else (STEPS, 6, WALLS, RESOLVED)
+    errors = figure_3(lines, rows, steps)
+    table_2(lines, rows, paper.TABLE_2[:specimens], every[-1])
+    walls = table_1(lines, rows, drawn_walls(count), every)
     header = ["wall", "timestep [s]", "omega h", "|e| of the law", "plain model", "contact points"]
     cli.report(out / "plain_models", "\n".join(lines), header, rows)
     plotting.save(picture(errors, walls), out / "plain_models.png")

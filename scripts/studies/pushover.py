@@ -57,7 +57,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     rows: list[list[object]] = []
     cells: list[Sequence[object]] = []
     axes = figure.subplots(2, 4, sharex=True, sharey=True)
-    for ax, (name, (block, effects)) in zip(axes.flat, CASES.items(), strict=True):
+    some = dict(list(CASES.items())[:: 4 if args.quick else 1])
+    for ax, (name, (block, effects)) in zip(axes.flat[: len(some)], some.items(), strict=True):
         case = mr.Case(block, 0.0, 1.0, effects=effects)
         curves = {
             "rigid": mr.pushover(case),

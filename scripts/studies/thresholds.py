@@ -94,7 +94,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     ]
     coarse = 1.0
     if args.quick:
-        pulses, coarse = pulses[1:2], 50.0
+        pulses, coarse = pulses[1:2], 1000.0
     rows: list[list[object]] = []
     for make, name, parameter, closed in tqdm(pulses, desc="thresholds", disable=None, leave=False):
         theory = threshold(

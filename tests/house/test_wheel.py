@@ -120,9 +120,10 @@ def test_the_readme_runs_from_the_wheel(wheel, tmp_path):
     It takes along the loops that the checkout has stored, for their sources are the same. That loops are compiled where
     none are stored is a matter of test_compiled.
     """
-    venv.create(tmp_path / "env", with_pip=True)
+    venv.create(tmp_path / "env", with_pip=False)
     python = tmp_path / "env" / "bin" / "python"
-    done = run(python, "-m", "pip", "install", "--quiet", "--no-compile", f"{wheel}[frames]")
+    pip = sys.executable, "-m", "pip", "--python", python  # of this environment, into the other one
+    done = run(*pip, "install", "--quiet", "--no-compile", f"{wheel}[frames]")
     if done.returncode and any(sign in done.stderr for sign in OFFLINE):
         python = installed_here(tmp_path / "here")
         target = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").stdout.strip()

@@ -1,5 +1,6 @@
 """No word of a public picture lies on another one, under a line or beyond the edge, whatever is drawn."""
 
+import functools
 import inspect
 import warnings
 
@@ -20,7 +21,7 @@ class Random:
     """Random things that pictures draw, by a seed."""
 
     def __init__(self, seed):
-        self.rng = np.random.default_rng(seed)
+        self.seed, self.rng = seed, np.random.default_rng(seed)
 
     def names(self, count):
         """Up to six names, some of them long."""
@@ -94,14 +95,17 @@ class Random:
         long, high = self.rng.integers(2, 9), self.rng.integers(2, 9)
         return mr.Masonry.running_bond(long * unit[0], high * unit[1], unit, k_n=1e9)
 
-    def thrown(self):
-        """A stack of which some blocks fall."""
+    @staticmethod
+    @functools.cache
+    def thrown(seed):
+        """A stack of which some blocks fall: one of a seed, which all pictures of such stacks draw."""
+        some = Random(seed)
         blocks = [
-            mr.Block.from_size(self.round(0.2, 0.3), self.round(0.3, 0.6)) for _ in range(self.rng.integers(2, 5))
+            mr.Block.from_size(some.round(0.2, 0.3), some.round(0.3, 0.6)) for _ in range(some.rng.integers(2, 5))
         ]
         masonry = mr.Masonry.stack(blocks, k_n=1e7)
-        velocity = [(self.within(0, 3), 0.0, self.within(0, 2)) for _ in blocks]
-        return mr.solve_explicit(mr.MasonryCase(masonry, self.within(0.3, 1.0), velocity=velocity), forces=True)
+        velocity = [(some.within(0, 3), 0.0, some.within(0, 2)) for _ in blocks]
+        return mr.solve_explicit(mr.MasonryCase(masonry, some.within(0.3, 1.0), velocity=velocity), forces=True)
 
     def curves(self):
         ways = (Random.tie, Random.load, Random.thrust)
@@ -168,7 +172,7 @@ def fragility(some):
 def pushed(some):
     along = np.linspace(0.0, some.within(0.01, 2.0), 9)
     force = some.within(1, 1e5) * along * (2 * along[-1] - along)
-    one = mr.Push(along, force, 0 * along, "", some.thrown(), energy=along)
+    one = mr.Push(along, force, 0 * along, "", some.thrown(some.seed), energy=along)
     return plotting.push(dict.fromkeys(some.names(some.rng.integers(1, 4)), one))
 
 
@@ -190,10 +194,10 @@ def tied(some):
 
 PICTURES = {
     "acceleration": lambda some: plotting.acceleration(some.case(), 3.0),
-    "blocks": lambda some: plotting.blocks(some.bond() if some.rng.random() < 0.5 else some.thrown()),
+    "blocks": lambda some: plotting.blocks(some.bond() if some.rng.random() < 0.5 else some.thrown(some.seed)),
     "comparison": lambda some: plotting.comparison([some.answer(some.case())], some.names(1)[0]),
     "design": designed,
-    "displacement": lambda some: plotting.displacement([some.thrown()]),
+    "displacement": lambda some: plotting.displacement([some.thrown(some.seed)]),
     "energy": lambda some: plotting.energy([some.answer(some.case())]),
     "fragility": fragility,
     "grid": lambda some: plotting.grid([(name, some.both(Random.load)) for name in some.names(3)]),
@@ -209,13 +213,13 @@ PICTURES = {
     "pushover": lambda some: plotting.pushover(some.curves()),
     "record": lambda some: plotting.record([some.case().motion, some.case().motion]),
     "rotation": lambda some: plotting.rotation(some.both(Random.load, Random.thrust), some.names(2)),
-    "single": lambda some: plotting.single(lambda ax: plotting.blocks(ax, some.thrown())),
+    "single": lambda some: plotting.single(lambda ax: plotting.blocks(ax, some.thrown(some.seed))),
     "sketch": lambda some: plotting.sketch(
         some.case(Random.tie, Random.thrust, Random.load, Random.mass), some.names(1)[0]
     ),
     "spectra": spectra,
     "thresholds": lambda some: plotting.thresholds(some.islands(), "m/s²"),
-    "thrust": lambda some: plotting.thrust(some.thrown()),
+    "thrust": lambda some: plotting.thrust(some.thrown(some.seed)),
     "ties": lambda some: plotting.ties([tied(some)]),
     "tornado": lambda some: plotting.tornado(some.study()),
 }
