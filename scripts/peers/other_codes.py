@@ -183,7 +183,7 @@ def stands(masonry: mr.Masonry) -> bool:
     return True
 
 
-def least_thickness(cuts: int, tolerance: float = 1e-5) -> float:
+def least_thickness(cuts: int, tolerance: float) -> float:
     """The least t/R at which a semicircle with vertical joints stands, by bisection."""
     low, high = 0.09, 0.13
     while high - low > tolerance:
@@ -227,10 +227,10 @@ def of_assemblies(folder: Path | None) -> str:
     return cli.table(header, rows)
 
 
-def of_arches(cuts: Sequence[int]) -> str:
-    """Least thickness with vertical joints, and the push that arches with either kind of joints bear."""
+def of_arches(cuts: Sequence[int], tolerance: float = 1e-5) -> str:
+    """Least thickness with vertical joints to a tolerance, and the push that arches with either kind of joints bear."""
     rows: list[list[object]] = [
-        [f"least t/R, {n} vertical joints", VERTICAL, f"{least_thickness(n):.5f}"] for n in cuts
+        [f"least t/R, {n} vertical joints", VERTICAL, f"{least_thickness(n, tolerance):.5f}"] for n in cuts
     ]
     for thick in (0.12, 0.15, 0.2):
         radial = mr.Masonry.arch(1.0, thick, voussoirs=cuts[-1], k_n=1e10, friction=10.0)
@@ -393,7 +393,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     by_pulse = dict(zip(pulses, rows, strict=False))
     found = {t_p: row["capacity_g"] for t_p, row in by_pulse.items()}
     least = dict(zip(tried, (row["capacity_g"] for row in rows[len(pulses) :]), strict=True))
-    scan = [analysis(AS_PUBLISHED, JUMP, a) for a in SCANNED[:: 7 if args.quick else 1]]
+    scan = [analysis(AS_PUBLISHED, JUMP, a) for a in SCANNED[:: 14 if args.quick else 1]]
     grid = [analysis(choice, t_p, v / t_p) for choice in (AS_PUBLISHED, DAMPED) for t_p in short for v in speeds]
     ends = completed([*scan, *grid], store, workers=args.workers)
     jump, mapped = [row["a"] for row in ends[: len(scan)] if falls(row)], ends[len(scan) :]
@@ -414,7 +414,7 @@ def main(argv: Sequence[str] | None = None) -> None:
         f"t_p {JUMP} s, {len(scan)} a from {scan[0].labels['a']} to {scan[-1].labels['a']} g: overturns at {jump}"
     )
     texts.append(f"limit analysis: {STATIC} published, {static:.4f} found")
-    texts += [of_assemblies(args.samples), of_arches(CUTS[:1] if args.quick else CUTS)]
+    texts += [of_assemblies(args.samples), of_arches(CUTS[:1], 1e-2) if args.quick else of_arches(CUTS)]
     cli.report(out / "other_codes", "\n\n".join(texts), header, table)
 
 
