@@ -69,59 +69,53 @@ def printed(tmp_path, lines, *arguments, **environment):
     return done.stdout
 
 
-OF_BOTH = pytest.mark.parametrize("law", ["laws.Stiffening(2e-5)", "own_links.Slider(1e5, 40.0)"])
+BOTH = "(laws.Stiffening(2e-5), own_links.Slider(1e5, 40.0))"
+"""A law of joints and one of links."""
 
 
 @pytest.mark.slow
-@OF_BOTH
-def test_plain_python_gives_the_same_bits(tmp_path, law):
+def test_plain_python_gives_the_same_bits(tmp_path):
     """Compiled, as plain Python in compiled loops, and as plain Python in loops that are plain Python."""
-    lines = [f"print(run({law}).pose[-1].tolist())"]
+    lines = [f"print([run(law).pose[-1].tolist() for law in {BOTH}])"]
     modes = ({}, {"MJROCK_INTERPRET": "laws"}, {"NUMBA_DISABLE_JIT": "1"})
     assert len({printed(tmp_path, lines, **mode) for mode in modes}) == 1
 
 
 @pytest.mark.slow
-@OF_BOTH
-def test_a_run_goes_on_in_a_fresh_process(tmp_path, law):
+def test_a_run_goes_on_in_a_fresh_process(tmp_path):
     """The addresses of compiled laws are those of the process."""
-    end = tmp_path / "end.pickle"
-    first = printed(
-        tmp_path,
-        [
-            f"end = run({law}).end",
-            "pickle.dump(end, open(sys.argv[2], 'wb'))",
-            f"print(run({law}, start=end).pose[-1].tolist())",
-        ],
-        end,
-    )
-    lines = [f"print(run({law}, start=pickle.load(open(sys.argv[2], 'rb'))).pose[-1].tolist())"]
-    assert printed(tmp_path, ["run(laws.Hertz(1e-3))", *lines], end) == first
+    path = tmp_path / "ends.pickle"
+    goes_on = f"print([run(law, start=end).pose[-1].tolist() for law, end in zip({BOTH}, ends)])"
+    ends = [f"ends = [run(law).end for law in {BOTH}]", "pickle.dump(ends, open(sys.argv[2], 'wb'))"]
+    first = printed(tmp_path, [*ends, goes_on], path)
+    lines = ["run(laws.Hertz(1e-3))", "ends = pickle.load(open(sys.argv[2], 'rb'))"]
+    assert printed(tmp_path, [*lines, goes_on], path) == first
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law", ["Mine()", "Catch(k=1e5)"])
-def test_a_campaign_takes_a_law_of_the_script_to_its_processes(tmp_path, law):
+def test_a_campaign_takes_laws_of_the_script_to_its_processes(tmp_path):
     lines = [
-        f"tasks = [mr.MasonryAnalysis(case(v, {law}), solver='explicit', labels={{'v': v}}) for v in (0.1, 0.2)]",
+        "runs = [(v, law) for v in (0.1, 0.2) for law in (Mine(), Catch(k=1e5))]",
+        "of = lambda v, law: {'v': v, 'law': type(law).__name__}",
+        "tasks = [mr.MasonryAnalysis(case(*run), solver='explicit', labels=of(*run)) for run in runs]",
         "path = mr.campaign(tasks, sys.argv[2], workers=int(sys.argv[3]))",
         "rows = mr.Store(path).rows()",
-        "print(sorted((row['v'], row['status'], row['largest_rotation_rad']) for row in rows))",
+        "print(sorted((row['v'], row['law'], row['status'], row['largest_rotation_rad']) for row in rows))",
     ]
     found = [printed(tmp_path, lines, tmp_path / f"{n}.sqlite", n).splitlines()[-1] for n in (1, 2)]
     assert found[0] == found[1]
-    assert found[0].count("done") + found[0].count("ok") == 2
+    assert found[0].count("done") + found[0].count("ok") == 4
 
 
 @pytest.mark.slow
-@OF_BOTH
-def test_a_saved_run_goes_on_with_its_laws(tmp_path, law):
+def test_a_saved_run_goes_on_with_its_laws(tmp_path):
     pytest.importorskip("h5py")
     lines = [
-        f"whole = run({law})",
-        "whole.save(sys.argv[2])",
-        f"again = mr.load(sys.argv[2], laws=[type({law})])",
-        f"runs = [run({law}, start=each.end).pose[-1].tolist() for each in (whole, again)]",
-        "print(runs[0] == runs[1])",
+        f"for law in {BOTH}:",
+        "    whole = run(law)",
+        "    whole.save(sys.argv[2])",
+        "    again = mr.load(sys.argv[2], laws=[type(law)])",
+        "    runs = [run(law, start=each.end).pose[-1].tolist() for each in (whole, again)]",
+        "    print(runs[0] == runs[1])",
     ]
-    assert printed(tmp_path, lines, tmp_path / "run.h5") == "True\n"
+    assert printed(tmp_path, lines, tmp_path / "run.h5").split() == ["True", "True"]
