@@ -105,16 +105,16 @@ class OwnLaws(JointLaw, Table):
 
     @classmethod
     def from_scene(cls, scene: Scene, lines: Rows) -> Self:
-        """Lines begin with the largest stiffness of their law."""
-        law = super().from_scene(scene, lines)
+        """Lines begin with the largest stiffness of their law. Joints of the same law and area share its answers."""
+        law, closing_at, stiffest = super().from_scene(scene, lines), cache(Own.closing_at), cache(Own.stiffest)
         weight, joint = GRAVITY * float(scene.bodies.mass.sum()), scene.contacts.joint
         for i, bond in enumerate(scene.contacts.bonds):
             if isinstance(bond, Own):
                 which = joint == i
                 law.rows["joint"][which] = i
                 area = np.asarray(scene.contacts.area)[which]
-                deepest = max(float(scene.bears[which].max()), bond.closing_at(weight / float(area.sum())))
-                k, c = bond.stiffest(CLOSING_OF_STABLE_STEPS * deepest)
+                deepest = max(float(scene.bears[which].max()), closing_at(bond, weight / float(area.sum())))
+                k, c = stiffest(bond, CLOSING_OF_STABLE_STEPS * deepest)
                 lines["k"][which] = np.where(law.rows["pulls"][which] > 0, 0.0, k * area)
                 law.rows["stiffest"][which] = k * area
                 law.rows["strongest"][which] = c * area if bond.damps else law.rows["c"][which]
