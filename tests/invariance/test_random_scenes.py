@@ -23,9 +23,9 @@ SLOW = (
     *(LATER + i for i in (10, 15, 16, 17, 18, 21, 26, 27, 28, 32, 34, 36, 42, 44, 47, 50, 52, 65, 75, 76)),
     *(LATER + i for i in (77, 83, 93, 98, 104, 109, 111, 114)),
 )
-"""Seeds of slow scenes. They draw twice, where two of the seeds above do, each kind of scene, device, action and outcome
-in each place and by each solver, and each invariance, in places that it applies to, in the shortest time. Few of them
-are refused. `python -m tests.invariance` runs any others."""
+"""Seeds of slow scenes. They draw twice, where two of the seeds above do, each kind of scene, device, action and
+outcome in each place and by each solver, and each invariance in places that it applies to, in the shortest time. Few
+of them are refused. `python -m tests.invariance` runs any others."""
 CHUNK, DRAWN = 5, 3
 """How many slow scenes are one test, and how many invariances each is under."""
 EVERY_DAY = (2, 5, 7, 12, 22, LATER + 21, LATER + 27)
