@@ -70,8 +70,8 @@ def require_memory(masonry: Masonry) -> None:
 
 def masonry_course(case: MasonryCase, scene: Scene) -> Course:
     """The course of the scene of a case: it starts at rest, with the velocities of the case."""
-    still = np.zeros((len(scene.bodies.names), scene.freedom.nv))
-    velocity = still if case.velocity is None else np.asarray(case.velocity)
+    standstill = np.zeros((len(scene.bodies.names), scene.freedom.nv))
+    velocity = standstill if case.velocity is None else np.asarray(case.velocity)
     motion, vertical = case.motion, case.vertical
     if case.tilt is not None:
         motion, vertical = motions_of_tilt(case.tilt, case.duration)

@@ -54,11 +54,11 @@ def keep_array(
         TypeError, ValueError: for what is not an array of numbers, another shape or a value out of range. The message
             names it.
     """
-    given, label = getattr(part, name), f"{name} of the {label_of(part)}"
+    argument, label = getattr(part, name), f"{name} of the {label_of(part)}"
     try:
-        values: NDArray[Any] = np.ascontiguousarray(given, dtype=kind)
+        values: NDArray[Any] = np.ascontiguousarray(argument, dtype=kind)
     except (TypeError, ValueError, OverflowError):
-        raise TypeError(f"{label} = {shown(given)} is not an array of numbers") from None
+        raise TypeError(f"{label} = {shown(argument)} is not an array of numbers") from None
     values = values if values.size else values.reshape(shape)
     if values.shape != shape:
         raise ValueError(f"{label} has the shape {values.shape}; {shape} is needed")
@@ -92,10 +92,10 @@ def require_on(bodies: Bodies, parts: Iterable[ContactPoints | Links | ConstantF
             label = f"at of the {label_of(part)}"
             raise ValueError(f"{label} has the shape {part.at.shape}; {(len(part.body), directions)} is needed")
         for name in ("body", "face_body", "anchor_body"):
-            least = 0 if name == "body" else GROUND
-            on = getattr(part, name, np.empty(0))
-            if not ((on >= least) & (on < n)).all():
-                raise ValueError(f"{name} of the {label_of(part)} is outside the valid range {least} to {n - 1}")
+            lowest = 0 if name == "body" else GROUND
+            numbers = getattr(part, name, np.empty(0))
+            if not ((numbers >= lowest) & (numbers < n)).all():
+                raise ValueError(f"{name} of the {label_of(part)} is outside the valid range {lowest} to {n - 1}")
 
 
 def require_inertia(inertia: Array) -> None:
@@ -118,7 +118,7 @@ def require_inertia(inertia: Array) -> None:
             )
 
 
-def _none() -> NDArray[Any]:
+def _empty_array() -> NDArray[Any]:
     """An array without values."""
     return np.empty(0)
 
@@ -309,12 +309,12 @@ class Links:
     """
 
     names: tuple[str, ...] = ()
-    body: Integers = field(default_factory=_none)
-    at: Array = field(default_factory=_none)
-    anchor_body: Integers = field(default_factory=_none)
-    anchor_at: Array = field(default_factory=_none)
-    law: NDArray[np.void] = field(default_factory=_none)
-    anchor_block: Integers = field(default_factory=_none)
+    body: Integers = field(default_factory=_empty_array)
+    at: Array = field(default_factory=_empty_array)
+    anchor_body: Integers = field(default_factory=_empty_array)
+    anchor_at: Array = field(default_factory=_empty_array)
+    law: NDArray[np.void] = field(default_factory=_empty_array)
+    anchor_block: Integers = field(default_factory=_empty_array)
     user_laws: tuple[AppliedLink | None, ...] = ()
 
     def __post_init__(self) -> None:
@@ -334,12 +334,12 @@ class Links:
 
     def _keep_law(self) -> None:
         """Check the laws and keep them as rows. A number may be infinite if its default is."""
-        given = self.law if np.size(self.law) else [LinkLaw()] * len(self.names)
+        argument = self.law if np.size(self.law) else [LinkLaw()] * len(self.names)
         try:
-            laws = given if isinstance(given, np.recarray) else [LinkLaw(*law) for law in given]
+            laws = argument if isinstance(argument, np.recarray) else [LinkLaw(*law) for law in argument]
             rows = np.array(laws, dtype=LAW)
         except (TypeError, ValueError, OverflowError):
-            raise TypeError(f"law of the links = {shown(given)} does not hold a LinkLaw for each") from None
+            raise TypeError(f"law of the links = {shown(argument)} does not hold a LinkLaw for each") from None
         object.__setattr__(self, "law", frozen(rows).view(np.recarray))
         if self.law.shape != (len(self.names),):
             raise ValueError(f"law of the links has the shape {self.law.shape}; {(len(self.names),)} is needed")
@@ -347,11 +347,11 @@ class Links:
             above, infinite = (0.0 if name in ("reach", "strength") else None), usual == math.inf
             require_values(f"{name} of the links", self.law[name], above, 0.0, infinite)
 
-    def chosen(self, some: Flags) -> Links:
+    def chosen(self, flags: Flags) -> Links:
         """Some of the links."""
-        if some.all():
+        if flags.all():
             return self
-        numbers = np.flatnonzero(some)
+        numbers = np.flatnonzero(flags)
         arrays = (entry.name for entry in fields(self) if entry.name not in ("names", "user_laws"))
         user_laws = tuple(self.user_laws[i] for i in numbers) if self.user_laws else ()
         return Links(
@@ -398,9 +398,9 @@ class ConstantForces:
     """
 
     names: tuple[str, ...] = ()
-    body: Integers = field(default_factory=_none)
-    at: Array = field(default_factory=_none)
-    force: Array = field(default_factory=_none)
+    body: Integers = field(default_factory=_empty_array)
+    at: Array = field(default_factory=_empty_array)
+    force: Array = field(default_factory=_empty_array)
 
     def __post_init__(self) -> None:
         f, directions = len(self.names), np.shape(self.at)[-1] if np.size(self.at) else 2
@@ -464,14 +464,14 @@ def attachments(
     """
     links, forces, d = link_effects(effects), constant_forces_of(effects), centroids.shape[1]
 
-    def on(some: Collection[Effect]) -> tuple[Integers, Array, Array]:
-        bodies = number[[effect.block for effect in some]]
-        points = np.array([place(effect) for effect in some])
+    def places_of(acting: Collection[Effect]) -> tuple[Integers, Array, Array]:
+        bodies = number[[effect.block for effect in acting]]
+        points = np.array([place(effect) for effect in acting])
         return bodies, points, points - centroids[bodies]
 
     pulled, pushed = Links(), ConstantForces()
     if links:
-        bodies, points, at = on(links.values())
+        bodies, points, at = places_of(links.values())
         blocks = np.array([GROUND if link.anchor_block is None else link.anchor_block for link in links.values()])
         others = np.where(blocks == GROUND, GROUND, number[blocks])
         ends = np.array([link.anchor_of(point) for link, point in zip(links.values(), points, strict=True)])
@@ -480,7 +480,7 @@ def attachments(
         user_laws = tuple(link.user_law for link in links.values())
         pulled = Links(tuple(links), bodies, at, others, ends, laws, blocks, user_laws if any(user_laws) else ())
     if forces:
-        bodies, _, at = on([effect for effect, _ in forces.values()])
+        bodies, _, at = places_of([effect for effect, _ in forces.values()])
         vectors = np.array([force for _, force in forces.values()])
         pushed = ConstantForces(tuple(forces), bodies, at, vectors if d == 3 else vectors[:, ::2])
     return pulled, pushed

@@ -43,9 +43,9 @@ class PairPattern:
         unknowns, on_diagonal = np.arange(nv), np.arange(count) * (count + 1)
         self.count = nv * count
         self.unknown = np.where(bodies[:, :, None] < 0, self.count, nv * bodies[:, :, None] + unknowns)
-        there = (bodies[:, :, None] >= 0) & (bodies[:, None] >= 0)
-        blocks = np.where(there, bodies[:, :, None] + count * bodies[:, None], 0)
-        filled = np.unique(np.append(blocks[there], on_diagonal))
+        both_move = (bodies[:, :, None] >= 0) & (bodies[:, None] >= 0)
+        blocks = np.where(both_move, bodies[:, :, None] + count * bodies[:, None], 0)
+        filled = np.unique(np.append(blocks[both_move], on_diagonal))
         column, row = np.divmod(filled, count)
         heights = nv * np.bincount(column, minlength=count)
         self.indptr = np.append(0, np.cumsum(np.repeat(heights, nv))).astype(np.int32)
@@ -55,7 +55,7 @@ class PairPattern:
         self.indices[places] = (nv * row)[:, None, None] + unknowns
         self.diagonal = places[np.searchsorted(filled, on_diagonal)][:, unknowns, unknowns].ravel()
         number = np.searchsorted(filled, blocks)
-        self.first, self.height = np.where(there, first[number], -1), heights[column[number]]
+        self.first, self.height = np.where(both_move, first[number], -1), heights[column[number]]
 
     def matrix(self, entries: Array) -> csc_array:
         """A stiffness as a matrix."""

@@ -398,8 +398,8 @@ def stiffness_at(potential: Potential, search: Search, trial: Trial) -> Array:
     pressed = (trial.push[:m] > 0)[slipping]
     rises = np.where(pressed, shear_limit(places.law, trial.springs[:m])[slipping], 0.0)  # with depth [N/m]
     lengths = rises[:, None, None] * trial.rates[:m][slipping]
-    which, one = np.flatnonzero(slipping), np.ones(len(rises))
-    return stiffness + potential.pattern.stiffness_of(Springs(trial.friction.along(slipping), lengths, one, which))
+    points, unit = np.flatnonzero(slipping), np.ones(len(rises))
+    return stiffness + potential.pattern.stiffness_of(Springs(trial.friction.along(slipping), lengths, unit, points))
 
 
 def normal_stiffness(potential: Potential, trial: Trial, springs: Array) -> Array:
@@ -439,8 +439,8 @@ def sizes(potential: Potential) -> Array:
 def sliders_at(contacts: Places, search: Search, push: Array) -> Sliders:
     """Sliders under forces of the contacts, negative where one is open [N], shape (m,)."""
     rubs = (contacts.tension > 0) | ((push >= 0) & (contacts.friction > 0))
-    most = contacts.cohesion + shear_limit(contacts.law, np.maximum(push, 0.0))
-    limit = np.where(rubs, most if search.limited else np.inf, -np.inf)
+    friction_limit = contacts.cohesion + shear_limit(contacts.law, np.maximum(push, 0.0))
+    limit = np.where(rubs, friction_limit if search.limited else np.inf, -np.inf)
     return Sliders(search.shear, limit, rubs, None if search.limited else contacts.joint)
 
 
@@ -474,7 +474,7 @@ def friction_at(potential: Potential, pose: Array, sliders: Sliders) -> PointFri
     if sliders.joint is not None:  # the body of a point may be either of a joint
         places = potential.structure.places
         turned_round = (places.body < places.face_body)[:, None, None]
-        rates = np.array([sliders.shared(np.where(turned_round, each[:, ::-1], each)) for each in rates])
+        rates = np.array([sliders.shared(np.where(turned_round, along[:, ::-1], along)) for along in rates])
         rates = np.where(turned_round, rates[:, :, ::-1], rates)
     return PointFriction(potential.pattern, rates, -stiffness[:, None] * stretch, stiffness, slips)
 
@@ -484,8 +484,8 @@ def shear_stiffness(friction: PointFriction, share: float) -> Array:
     groups = [Springs(rates, rates, friction.stiffness, slice(len(rates))) for rates in friction.rates]
     if (slipping := friction.slipping).any():
         along = friction.along(slipping)
-        less = (share - 1) * friction.stiffness[slipping]
-        groups.append(Springs(along, along, less, np.flatnonzero(slipping)))
+        change = (share - 1) * friction.stiffness[slipping]
+        groups.append(Springs(along, along, change, np.flatnonzero(slipping)))
     return friction.pattern.stiffness_of(*groups)
 
 
@@ -498,12 +498,12 @@ def falling_direction(potential: Potential, search: Search, trial: Trial) -> Arr
     presses = (trial.push > tolerance(potential, trial.pose, search)) | potential.bonded
     geometric = curvature(potential, trial)
     stiffness = normal_stiffness(potential, trial, np.where(presses, trial.springs, 0.0))
-    most = float(abs(geometric).sum(axis=1).max())  # that the forces take from the stiffness
+    softening = float(abs(geometric).sum(axis=1).max())  # that the forces take from the stiffness
     total = stiffness + shear_stiffness(trial.friction, 1.0) + potential.pattern.entries_of(geometric)
     matrix = potential.pattern.matrix(total)
     if is_clearly_stable(matrix):
         return None
-    lowest, direction = lowest_mode(matrix, most)
+    lowest, direction = lowest_mode(matrix, softening)
     return direction if lowest < -NEGLIGIBLE_STIFFNESS * float(np.abs(stiffness).max()) else None
 
 

@@ -128,19 +128,19 @@ class Scene:
     @cached_property
     def ties(self) -> Ties:
         """The links with a spring, for the compiled functions. Those that also push bear nothing at rest."""
-        ties = self._ties(self.links.sprung)
+        ties = self._drawn_ties(self.links.sprung)
         if not (ties.squeeze > 0).any():
             return ties
         frames = frames_of(self.at_rest.ravel(), self.freedom)
         lengths = [math.hypot(*ends(ties.links, i, frames).span) for i in range(len(ties.k))]
         return ties._replace(reach=frozen(np.where(ties.squeeze > 0, lengths, ties.reach)))
 
-    def _ties(self, links: Links) -> Ties:
+    def _drawn_ties(self, links: Links) -> Ties:
         """Links with a spring, as they are drawn. An own law answers beyond the length that it has there."""
-        ends, own = self._ends_of(links), links.are_owned
+        ends, owned = self._ends_of(links), links.are_owned
         k, reach = links.law["k"], links.law["reach"]
-        if own.any():
-            k, reach = np.where(own, 1.0, k), np.where(own, np.linalg.norm(ends.between, axis=1), reach)
+        if owned.any():
+            k, reach = np.where(owned, 1.0, k), np.where(owned, np.linalg.norm(ends.between, axis=1), reach)
         k, reach = frozen(k), frozen(reach)
         stretch, squeeze = frozen(links.law["strength"] / k), frozen(links.law["push"] / k)
         return Ties(ends, k, reach, stretch, frozen(reach + stretch + links.law["ultimate"]), squeeze)
@@ -164,11 +164,11 @@ class Scene:
     def potential(self) -> Potential:
         """The energy of all that may have a force at rest, as a function of the pose."""
         axes, forces = self.freedom.axes, self.forces
-        vectors = (each.reshape(-1, len(axes)) for each in (forces.at, forces.force))
+        vectors = (values.reshape(-1, len(axes)) for values in (forces.at, forces.force))
         bearing = self.links.bearing
         structure = Structure(
             self.places,
-            self._ties(bearing),
+            self._drawn_ties(bearing),
             AppliedForces(axes, forces.body, *vectors),
             self.bodies.masses,
             self.bodies.products,

@@ -33,12 +33,12 @@ def distinct_tints(count: int, touching: Iterable[tuple[int, int]]) -> list[int]
         count: of the bodies.
         touching: pairs of numbers of bodies.
     """
-    near: list[set[int]] = [set() for _ in range(count)]
-    for one, other in touching:
-        near[one].add(other)
-        near[other].add(one)
+    neighbours_of: list[set[int]] = [set() for _ in range(count)]
+    for body, neighbour in touching:
+        neighbours_of[body].add(neighbour)
+        neighbours_of[neighbour].add(body)
     chosen: list[int] = []
-    for j, neighbours in enumerate(near):
+    for j, neighbours in enumerate(neighbours_of):
         used, first = {chosen[i] for i in neighbours if i < j}, int(len(TINTS) * (j * GOLDEN % 1))
         order = [(first + k) % len(TINTS) for k in range(len(TINTS))]
         chosen.append(next((tint for tint in order if tint not in used), first))

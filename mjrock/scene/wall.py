@@ -147,10 +147,10 @@ def require_carried(case: Case, contacts: Contacts) -> None:
     """Raise ValueError unless the springs of the base hold the wall upright with its masses and loads."""
     toppling = 0.5 * (case.restoring.outer.Q + case.restoring.inner.Q)
     if not contacts.base.K_rot > toppling:
-        least = contacts.base.k_n * toppling / contacts.base.K_rot
+        least_k_n = contacts.base.k_n * toppling / contacts.base.K_rot
         raise ValueError(
             f"base stiffness k_n = {contacts.base.k_n:g} N/m3 cannot hold the wall upright with its masses and loads; "
-            f"the valid range is k_n > {least:.3g} N/m3"
+            f"the valid range is k_n > {least_k_n:.3g} N/m3"
         )
 
 
