@@ -28,15 +28,15 @@ from .system import System
 def system_of(scene: Scene, *, ended: bool = False) -> System:
     """The system of a scene without its links, undeformed. Faces of joints may be `ended`, as those of masonry are."""
     d, n = scene.bodies.rest.shape[1], len(scene.bodies.mass)
-    kind = kinds(d)
+    row_types = kinds(d)
     inverse = np.linalg.inv(np.reshape(scene.bodies.inertia, (n, 2 * d - 3, -1)))
-    bodies = rows(kind.body, n, mass=scene.bodies.mass, inverse_inertia=inverse, rest=scene.bodies.rest)
+    bodies = rows(row_types.body, n, mass=scene.bodies.mass, inverse_inertia=inverse, rest=scene.bodies.rest)
     bodies["inverse_mass"] = 1 / scene.bodies.mass[:, None]
-    lines, edges = lines_of(scene), rows(kind.edge, 0)
+    lines, edges = lines_of(scene), rows(row_types.edge, 0)
     if ended:
         edges = add_joints(lines, scene)
     acting = (), np.zeros(0, dtype=np.int64), Ground.from_motions(None), moving((), d)
-    system = System(scene.freedom.axes, bodies, lines, edges, rows(kind.tangent, 0), no_laws(d), *acting)
+    system = System(scene.freedom.axes, bodies, lines, edges, rows(row_types.tangent, 0), no_laws(d), *acting)
     return at_pose(system.with_room_for_friction(), scene.potential.unmoved.reshape(n, -1))
 
 
@@ -62,7 +62,7 @@ def lines_of(scene: Scene) -> Rows:
 
 def add_joints(lines: Rows, scene: Scene) -> Rows:
     """Give lines their dashpots along the two faces of their joint and the ends of these. Returns the edges of all."""
-    of, joints = scene.contacts.joint, scene.rest_geometry.joints
+    joint_of_line, joints = scene.contacts.joint, scene.rest_geometry.joints
     number = np.array([solid.body for solid in scene.rest_geometry.solids])
     origins = np.where(number[:, None] < 0, 0.0, scene.bodies.rest[number])
     below, above = np.array([(joint.below, joint.above) for joint in joints]).T
@@ -72,9 +72,9 @@ def add_joints(lines: Rows, scene: Scene) -> Rows:
     ends = np.column_stack([counts[:-1], counts[1:]]).reshape(-1, 2, 2)  # (joints, below and above, first and last)
     is_above = scene.sense > 0
     fixed = np.cumsum(number < 0) - 1
-    lines["sense"], lines["fixed"] = scene.sense, np.where(lines["face"] < 0, fixed[below][of], -1)
-    lines["first"], lines["last"] = ends[of, np.where(is_above, 0, 1)].T
-    lines["own_first"], lines["own_last"] = ends[of, np.where(is_above, 1, 0)].T
+    lines["sense"], lines["fixed"] = scene.sense, np.where(lines["face"] < 0, fixed[below][joint_of_line], -1)
+    lines["first"], lines["last"] = ends[joint_of_line, np.where(is_above, 0, 1)].T
+    lines["own_first"], lines["own_last"] = ends[joint_of_line, np.where(is_above, 1, 0)].T
     lines["margin"] = margins(lines, edges)
     sprung = np.isfinite(lines["k_s"])
     lines["c_s"][sprung] = lines["c"][sprung] * lines["k_s"][sprung] / lines["k"][sprung]
@@ -108,9 +108,10 @@ def with_supports(system: System, scene: Scene, supports: Sequence[Support]) -> 
     for table in system.links:
         table.rows["support"] = [numbers.get(block, -1) for block in table.rows["anchor_block"].tolist()]
     below = np.array([numbers.get(joint.below, -1) for joint in joints])
-    of = scene.contacts.joint
-    system.lines["support"] = np.where(system.lines["face"] < 0, below[of], -1)
-    return system._replace(supports=moving([(each.t, each.displacement) for each in supports], len(system.axes)))
+    joint_of_line = scene.contacts.joint
+    system.lines["support"] = np.where(system.lines["face"] < 0, below[joint_of_line], -1)
+    histories = [(support.t, support.displacement) for support in supports]
+    return system._replace(supports=moving(histories, len(system.axes)))
 
 
 def guide(system: System, case: MasonryCase) -> None:
@@ -122,7 +123,7 @@ def guide(system: System, case: MasonryCase) -> None:
 
 def guided_as(bodies: Rows, others: Rows) -> None:
     """Give moving bodies the guides of others. What a guide fixes, or has fixed, has no velocity."""
-    fixed = [~some["inverse_inertia"].any(axis=(1, 2)) for some in (bodies, others)]
+    fixed = [~table["inverse_inertia"].any(axis=(1, 2)) for table in (bodies, others)]
     for name in ("inverse_mass", "inverse_inertia"):
         bodies[name] = others[name]
     bodies["velocity"][bodies["inverse_mass"] == 0] = 0.0

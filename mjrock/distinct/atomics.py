@@ -23,21 +23,21 @@ WORD = 8
 
 
 def _place(
-    context: BaseContext, builder: ir.IRBuilder, kind: types.Type, numbers: ir.Value, index: ir.Value
+    context: BaseContext, builder: ir.IRBuilder, array_type: types.Type, numbers: ir.Value, index: ir.Value
 ) -> ir.Value:
     """The address of a number of an array."""
-    return builder.gep(context.make_array(kind)(context, builder, numbers).data, [index])
+    return builder.gep(context.make_array(array_type)(context, builder, numbers).data, [index])
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def _add(typing: Context, numbers: types.Type, index: types.Type, more: types.Type) -> Intrinsic:
+def _add(typing: Context, numbers: types.Type, index: types.Type, amount: types.Type) -> Intrinsic:
     signature = types.int64(numbers, types.int64, types.int64)
 
     def generated(
-        context: BaseContext, builder: ir.IRBuilder, signature: Signature, given: Sequence[ir.Value]
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: Sequence[ir.Value]
     ) -> ir.Value:
-        place = _place(context, builder, signature.args[0], given[0], given[1])
-        return builder.atomic_rmw("add", place, given[2], ORDERED)
+        place = _place(context, builder, signature.args[0], arguments[0], arguments[1])
+        return builder.atomic_rmw("add", place, arguments[2], ORDERED)
 
     return signature, generated
 
@@ -47,30 +47,30 @@ def _look(typing: Context, numbers: types.Type, index: types.Type) -> Intrinsic:
     signature = types.int64(numbers, types.int64)
 
     def generated(
-        context: BaseContext, builder: ir.IRBuilder, signature: Signature, given: Sequence[ir.Value]
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: Sequence[ir.Value]
     ) -> ir.Value:
-        return builder.load_atomic(_place(context, builder, signature.args[0], *given), ORDERED, WORD)
+        return builder.load_atomic(_place(context, builder, signature.args[0], *arguments), ORDERED, WORD)
 
     return signature, generated
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def _rest(typing: Context, numbers: types.Type, address: types.Type) -> Intrinsic:
+def _give_way(typing: Context, numbers: types.Type, address: types.Type) -> Intrinsic:
     signature = types.int64(numbers, types.int64)
 
     def generated(
-        context: BaseContext, builder: ir.IRBuilder, signature: Signature, given: Sequence[ir.Value]
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: Sequence[ir.Value]
     ) -> ir.Value:
-        kind = ir.FunctionType(ir.IntType(32), [])
-        builder.call(builder.inttoptr(given[1], kind.as_pointer()), [])
+        function_type = ir.FunctionType(ir.IntType(32), [])
+        builder.call(builder.inttoptr(arguments[1], function_type.as_pointer()), [])
         return ir.Constant(ir.IntType(64), 0)
 
     return signature, generated
 
 
-def add(numbers: Integers, index: int, more: int) -> Any:
+def add(numbers: Integers, index: int, amount: int) -> Any:
     """Add to a number of an array. Returns what it was before."""
-    return _add(numbers, index, more)
+    return _add(numbers, index, amount)
 
 
 def look(numbers: Integers, index: int) -> Any:
@@ -78,6 +78,6 @@ def look(numbers: Integers, index: int) -> Any:
     return _look(numbers, index)
 
 
-def rest(numbers: Integers, address: int) -> Any:
+def give_way(numbers: Integers, address: int) -> Any:
     """Let other threads have the core, by a function of C with an address. The numbers are left as they are."""
-    return _rest(numbers, address)
+    return _give_way(numbers, address)

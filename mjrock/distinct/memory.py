@@ -81,9 +81,9 @@ def remember(structure: object, system: System, clock: Clock, blocks: tuple[str,
     """
     t, h, supports = clock.step * clock.h, clock.h, system.supports
     ground_acceleration_before = ground_acceleration(system.ground, t - 0.25 * h, 0.5 * h, system.axes)
-    moved, kept = dict(zip(blocks, places(supports, t) - supports.moved, strict=True)), copied(system)
-    kept = kept._replace(links=tuple(table.remembered(t) for table in kept.links))
-    return Memory(structure, kept, h, ground_acceleration_before, moved)
+    moved, copy_before = dict(zip(blocks, places(supports, t) - supports.moved, strict=True)), copied(system)
+    copy_before = copy_before._replace(links=tuple(table.remembered(t) for table in copy_before.links))
+    return Memory(structure, copy_before, h, ground_acceleration_before, moved)
 
 
 def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
@@ -102,6 +102,6 @@ def recalled(memory: Memory, system: System, blocks: tuple[str, ...]) -> System:
     carried.lines["widest"] = 0.0
     guided_as(carried.bodies, system.bodies)
     links = tuple(table.resumed(before) for table, before in zip(system.links, carried.links, strict=True))
-    laws = tuple(law.resumed(now) for law, now in zip(carried.laws, system.laws, strict=True))
+    laws = tuple(law.resumed(from_rest) for law, from_rest in zip(carried.laws, system.laws, strict=True))
     carried = system._replace(bodies=carried.bodies, lines=carried.lines, laws=laws, links=links)
     return carried.with_room_for_friction()

@@ -63,8 +63,8 @@ class Run:
 
     def forces_of(self, link_forces: Array, *, driven: bool) -> dict[str, Array]:
         """The force of each link, or of each actuator, by name, among those of all."""
-        some = ((row, name) for table, row, name in self.links if table.reported and table.driven is driven)
-        return {name: link_forces[:, row.number] for row, name in some}
+        links = ((row, name) for table, row, name in self.links if table.reported and table.driven is driven)
+        return {name: link_forces[:, row.number] for row, name in links}
 
     @cached_property
     def energy(self) -> Array:
@@ -74,9 +74,9 @@ class Run:
     def above_rest(self, energy: Rows) -> Array:
         """The same of samples or checks, the first of which is the start."""
         at_rest = self.scene.rest_energies.sum()
-        there = energy["kinetic"] + energy["potential"] + energy["elastic"]
-        preloaded = float(there[0] - at_rest - self.setup.course.energy(self.scene))
-        return np.asarray(there - (float(at_rest) + preloaded))
+        mechanical = energy["kinetic"] + energy["potential"] + energy["elastic"]
+        preloaded = float(mechanical[0] - at_rest - self.setup.course.energy(self.scene))
+        return np.asarray(mechanical - (float(at_rest) + preloaded))
 
     @property
     def rounding(self) -> float:
@@ -197,20 +197,20 @@ def require_sound(run: Run, step: float) -> None:
     if not np.isfinite(run.energy[-1]):
         raise RuntimeError(f"the motion breaks down at t = {run.t[-1]:.4g} s; take a shorter timestep")
     checks = run.samples.checks[: len(run.checked)]
-    work, left = checks["ground"] + checks["driven"], checks["joint_ends"] + checks["encounter_ends"]
-    there = run.above_rest(checks)
-    given = max(float(there[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
+    work, lost = checks["ground"] + checks["driven"], checks["joint_ends"] + checks["encounter_ends"]
+    mechanical = run.above_rest(checks)
+    supplied = max(float(mechanical[0]), 0.0) + float(np.abs(np.diff(work)).sum()) + float(run.scene.rest_energies[2])
     kinetic = float(checks["kinetic"].max())  # what falls below its rest has more
     elastic = float(checks["elastic"].max())  # and masonry that is wedged, or pushed by supports
-    scale = max(given, kinetic, elastic, run.rounding / ENERGY_GAIN)
+    scale = max(supplied, kinetic, elastic, run.rounding / ENERGY_GAIN)
     try:
-        require_no_gain(run.checked, there - work + left, scale)
+        require_no_gain(run.checked, mechanical - work + lost, scale)
     except StepError as gain:
         message = f"{gain} by t = {gain.t:.4g} s; {advice(step, 4 * gain.share, ENERGY_GAIN)}"
         raise EnergyGainError(message) from None
-    if -left.min() > RESIDUAL_WARNED_OF * scale:
+    if -lost.min() > RESIDUAL_WARNED_OF * scale:
         warn_of(
-            f"contacts at ends of faces put in {-left.min():.3g} J, {-left.min() / scale:.1%} of the energy there was: "
+            f"contacts at ends of faces put in {-lost.min():.3g} J, {-lost.min() / scale:.1%} of the energy there was: "
             "a block that slides over the end of a face is met all at once, at any step",
         )
 

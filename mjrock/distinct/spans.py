@@ -16,13 +16,13 @@ from .thread import Thread, add_pending_forces, wait
 act = method("act")
 
 
-def _of_kind(table: Any) -> Callable[..., Any]:
+def _slicer_of(table: Any) -> Callable[..., Any]:
     kind: Any = getattr(table, "instance_class", type(table))
-    return _within(kind)
+    return _slicer_of_kind(kind)
 
 
 @cache
-def _within(kind: Any) -> Callable[..., Any]:
+def _slicer_of_kind(kind: Any) -> Callable[..., Any]:
     def part(table: Any, first: int, last: int) -> Any:
         count = len(table.rows)
         return kind(table.rows[min(first, count) : min(last, count)])
@@ -30,7 +30,7 @@ def _within(kind: Any) -> Callable[..., Any]:
     return part
 
 
-rows_within = by_type(_of_kind)
+rows_within = by_type(_slicer_of)
 """A table with its rows from one number to another, as far as there are any."""
 
 
@@ -107,11 +107,11 @@ def press_by_laws(laws: Tables, system: System, books: Books, thread: Thread, t:
 @inlined
 def press_spans(system: System, books: Books, thread: Thread, h: float, force_time: float, steps_ahead: float) -> int:
     """`press_lines` for the spans of a thread. Returns how many stick rigidly."""
-    active, touched, each = 0, 0, len(system.axes) - 1
+    active, touched, per_line = 0, 0, len(system.axes) - 1
     start = thread.starts[thread.number]
     for span in range(thread.own_lines[0], thread.own_lines[1]):
         first, last = thread.lines[span], thread.lines[span + 1]
-        lines_of_span = with_rows(system, system.bodies, system.lines[first:last], system.tangents[each * active :])
+        lines_of_span = with_rows(system, system.bodies, system.lines[first:last], system.tangents[per_line * active :])
         accounts = books_of_lines(system, books, thread, span, books.active[active:], books.touched[start + touched :])
         sticking, met = press_lines(lines_of_span, accounts, h, force_time, steps_ahead)
         for i in range(sticking):

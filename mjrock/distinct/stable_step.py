@@ -31,7 +31,7 @@ def longest_step(system: System) -> float:
     """The longest stable step [s], infinite where nothing acts but weight."""
     lines, bodies = stiffest_lines(system), len(system.bodies)
     rates = [line_rates(lines, directions_of(np.asarray(lines["normal"])), bodies)]
-    links = [table for table in system.links if any(of.any() for of in table.springs())]
+    links = [table for table in system.links if any(springs.any() for springs in table.springs())]
     rates += [table.rates(system.bodies) for table in links]
     lengths = rates[0] if not links else csr_array(vstack(rates))
     root = root_of_masses(system)
@@ -47,7 +47,7 @@ def longest_step(system: System) -> float:
 def rates_of_links(system: System) -> tuple[float, float]:
     """The highest circular frequency of the bodies on the springs of links alone, and the highest rate at which
     dashpots of links without a spring let a velocity decay [1/s]. Actuators, which follow histories, are left out."""
-    links = [table for table in system.links if not table.driven and any(of.any() for of in table.springs())]
+    links = [table for table in system.links if not table.driven and any(springs.any() for springs in table.springs())]
     if not links:
         return 0.0, 0.0
     k, c = (np.concatenate([table.springs()[i] for table in links]) for i in range(2))
@@ -65,8 +65,8 @@ def stiffest_lines(system: System) -> Rows:
     attributes, as the law of a joint reads them."""
     lines = system.lines.copy().view(np.recarray)
     for law in system.laws:
-        for name, most in law.springs().items():
-            lines[name][: len(most)] = np.maximum(lines[name][: len(most)], most)
+        for name, largest in law.springs().items():
+            lines[name][: len(largest)] = np.maximum(lines[name][: len(largest)], largest)
     return lines
 
 

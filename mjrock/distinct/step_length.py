@@ -99,7 +99,7 @@ class Impacts(NamedTuple):
         _, first, joint = np.unique(lines["group"][moves], return_index=True, return_inverse=True)
         inverse_mass = inverse_mass[moves][first]
         springs = largest_stiffness(lines), lines["c"]
-        stiffness, damping = (inverse_mass * np.bincount(joint, each[moves]) for each in springs)
+        stiffness, damping = (inverse_mass * np.bincount(joint, column[moves]) for column in springs)
         frequency = np.sqrt(stiffness)
         return cls(frequency, damping / (2 * frequency))
 
@@ -136,9 +136,9 @@ class LongestSteps(NamedTuple):
     given: float = math.inf
     damped: float = 1.0
 
-    def step(self, least: float) -> float:
+    def step(self, shortest: float) -> float:
         """The longest stable step [s], where no springs shorten it below another one [s]."""
-        return min(max(self.loose, least), self.damped * max(self.given, least))
+        return min(max(self.loose, shortest), self.damped * max(self.given, shortest))
 
 
 class StepLength(NamedTuple):
@@ -174,10 +174,10 @@ class StepLength(NamedTuple):
             given: flat impacts of pairs that are given.
         """
         limit = longest_step(system) if len(system.guided) else unguided
-        least = LEAST_STEP_OF_LIGHT_BLOCKS * min(limit, unguided)
+        shortest = LEAST_STEP_OF_LIGHT_BLOCKS * min(limit, unguided)
         impacts = Impacts.at_joints(system)
-        step = impacts.step(STEP_TAKEN * min(limit, later.step(least)))
-        step = max(given.step(step), min(step, STEP_TAKEN * later.damped * least))
+        step = impacts.step(STEP_TAKEN * min(limit, later.step(shortest)))
+        step = max(given.step(step), min(step, STEP_TAKEN * later.damped * shortest))
         frequency, decay = rates_of_links(system)
         of_ties = max(THROWN_BACK / max(frequency, 1e-300), SHORTER_FOR_TIES * step)
         return cls(limit, min(step, of_ties, STOPPED / max(decay, 1e-300)), impacts=impacts.beside(given))

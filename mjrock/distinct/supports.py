@@ -80,6 +80,6 @@ def velocity_changes(supports: Supports, t: float, until: float) -> Array:
         low, high = np.searchsorted(times, (t, until), side="right")
         parts = slice(first + max(low - 1, 0), min(first + high + 1, last))
         rates = np.diff(supports.displacement[parts], axis=0) / np.diff(supports.t[parts])[:, None]
-        still = np.zeros((int(low == 0 or high == len(times)), d))  # before and after its history
-        changes[i] = np.linalg.norm(np.concatenate([rates, still]) - supports.moving[i], axis=1).max()
+        standstill = np.zeros((int(low == 0 or high == len(times)), d))  # before and after its history
+        changes[i] = np.linalg.norm(np.concatenate([rates, standstill]) - supports.moving[i], axis=1).max()
     return changes

@@ -79,8 +79,8 @@ class Books(NamedTuple):
     def empty(cls, system: System, groups: int) -> Books:
         """Empty books of a system."""
         links = sum(len(table.rows) * len(table.booked) for table in system.links)
-        none, integers, kind = np.zeros(0), np.zeros(0, dtype=np.int64), kinds(len(system.axes))
-        waiting = rows(kind.total, 1), integers, integers, none, none, none, rows(kind.pending, 1)
+        none, integers, row_types = np.zeros(0), np.zeros(0, dtype=np.int64), kinds(len(system.axes))
+        waiting = rows(row_types.total, 1), integers, integers, none, none, none, rows(row_types.pending, 1)
         return cls(np.zeros(groups), np.zeros(links), *waiting).with_room(system)
 
     def with_room(self, system: System) -> Books:
@@ -90,9 +90,9 @@ class Books(NamedTuple):
         if lines > len(self.active):
             active, touched = (np.zeros(lines, dtype=np.int64) for _ in range(2))
             books = books._replace(active=active, touched=touched, impulse=np.zeros(lines), remaining=np.zeros(lines))
-        more = max(len(spans), len(spans_of_bodies(system.bodies))) - 1 - len(self.totals)
-        if more > 0:
-            books = books._replace(totals=joined(self.totals, rows(self.totals.dtype, more)))
+        missing = max(len(spans), len(spans_of_bodies(system.bodies))) - 1 - len(self.totals)
+        if missing > 0:
+            books = books._replace(totals=joined(self.totals, rows(self.totals.dtype, missing)))
         if (accounts := len(spans) - 1 + len(self.dashpots)) > len(self.encounters):
             encounters = np.zeros(accounts)
             encounters[: len(self.encounters)] = self.encounters
@@ -145,8 +145,8 @@ class Samples(NamedTuple):
         freedom = PLANE if len(system.axes) == 2 else SPACE
         count, bodies, links = count + 1, len(system.bodies), sum(len(table.rows) for table in system.links)
         pose, velocity = np.zeros((count, bodies, freedom.nq)), np.zeros((count, bodies, freedom.nv))
-        kept = (books.dashpots, books.links)
-        arrays: list[Any] = [np.zeros((count, len(account) if ledger else 0)) for account in kept]
+        accounts = (books.dashpots, books.links)
+        arrays: list[Any] = [np.zeros((count, len(account) if ledger else 0)) for account in accounts]
         sizes: tuple[tuple[int, ...], ...] = ((freedom.nv,), (freedom.translations,), (), (freedom.nv,))
         arrays += [np.zeros((count, links)), *(np.zeros((count, 0, *size)) for size in sizes)]
         return cls(pose, velocity, rows(ENERGY, count), rows(ENERGY, checks), *arrays)
@@ -164,10 +164,10 @@ class Samples(NamedTuple):
             guided=room(self.guided, counts.actuators),
         )
 
-    def chosen(self, which: slice | Integers) -> Samples:
+    def chosen(self, index: slice | Integers) -> Samples:
         """Some of the samples, and all checks."""
-        kept = {name: part[which] for name, part in self._asdict().items() if name != "checks"}
-        return self._replace(**kept)
+        parts = {name: part[index] for name, part in self._asdict().items() if name != "checks"}
+        return self._replace(**parts)
 
     def since_the_start(self) -> Samples:
         """The same with accounts that begin at the first sample."""

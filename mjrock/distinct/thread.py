@@ -63,12 +63,12 @@ class Thread(NamedTuple):
 def threads_of(bodies: Rows, lines: Rows, count: int) -> tuple[tuple[Thread, ...], Rows]:
     """A number of threads for these bodies and lines, and room for the forces that wait, see `pending_forces`."""
     spans, of_bodies = spans_of(lines), spans_of_bodies(bodies)
-    parts, parts_of_bodies = ([i * (len(each) - 1) // count for i in range(count + 1)] for each in (spans, of_bodies))
+    parts, parts_of_bodies = ([i * (len(ends) - 1) // count for i in range(count + 1)] for ends in (spans, of_bodies))
     pending = pending_forces(bodies, lines, spans[parts])
     first = (1 + pending["body"][1:].searchsorted(of_bodies[parts_of_bodies])).tolist()
     touched, gate = np.zeros(count, dtype=np.int64), np.zeros(GATE_END + 1, dtype=np.int64)
     shared = spans[parts[:-1]], touched, gate, yielding()
-    own_lines, own_bodies, own_pending = (list(pairwise(each)) for each in (parts, parts_of_bodies, first))
+    own_lines, own_bodies, own_pending = (list(pairwise(ends)) for ends in (parts, parts_of_bodies, first))
     threads = [
         Thread(i, count, spans, of_bodies, own_lines[i], own_bodies[i], own_pending[i], *shared) for i in range(count)
     ]
@@ -99,22 +99,22 @@ def pending_forces(bodies: Rows, lines: Rows, parts: Integers) -> Rows:
             their force need not wait.
         parts: where the lines of each thread begin, and where those of the last one end.
     """
-    kind = kinds(bodies["rest"].shape[1]).pending
+    row_type = kinds(bodies["rest"].shape[1]).pending
     if len(parts) == 2:  # one thread
         lines["pending"] = lines["face_pending"] = 0
-        return rows(kind, 1, body=-1)
+        return rows(row_type, 1, body=-1)
     thread = np.repeat(np.arange(len(parts) - 1), np.diff(parts))
     sides = np.column_stack([lines["body"], lines["face"]]).ravel()
     first, last = np.full(len(bodies), len(parts)), np.full(len(bodies), -1)
-    there = np.flatnonzero(sides >= 0)
-    np.minimum.at(first, sides[there], thread[there // 2])
-    np.maximum.at(last, sides[there], thread[there // 2])
-    waits = there[(first < last)[sides[there]]]
+    pressed_sides = np.flatnonzero(sides >= 0)
+    np.minimum.at(first, sides[pressed_sides], thread[pressed_sides // 2])
+    np.maximum.at(last, sides[pressed_sides], thread[pressed_sides // 2])
+    waits = pressed_sides[(first < last)[sides[pressed_sides]]]
     waits = waits[np.argsort(sides[waits], kind="stable")]
     numbers = np.zeros(2 * len(lines), dtype=np.int32)
     numbers[waits] = 1 + np.arange(len(waits))
     lines["pending"], lines["face_pending"] = numbers[::2], numbers[1::2]
-    return rows(kind, 1 + len(waits), body=np.append(-1, sides[waits]))
+    return rows(row_type, 1 + len(waits), body=np.append(-1, sides[waits]))
 
 
 @cache
@@ -168,8 +168,8 @@ def add_pending_forces(thread: Thread, pending: Rows, bodies: Rows) -> None:
         put(row.moment, minus(turning, turning))
 
 
-def _atomic(name: str) -> object:
-    def by_one_thread(gate: Integers, *more: int) -> int:
+def _atomic_call(name: str) -> object:
+    def by_one_thread(gate: Integers, *arguments: int) -> int:
         return 0
 
     def chosen(gate: object) -> object:
@@ -182,7 +182,7 @@ def _atomic(name: str) -> object:
     return chosen
 
 
-add, look, rest = (by_type(_atomic(name)) for name in ("add", "look", "rest"))  # type: ignore[arg-type]
+add, look, give_way = (by_type(_atomic_call(name)) for name in ("add", "look", "give_way"))  # type: ignore[arg-type]
 
 
 @inlined
@@ -204,7 +204,7 @@ def meet_others(gate: Integers, threads: int, pause: int) -> None:
         while look(gate, GATE_ROUNDS) == turn:
             looks += 1
             if looks > LOOKS_AT_GATE:
-                rest(gate, pause)
+                give_way(gate, pause)
 
 
 @inlined

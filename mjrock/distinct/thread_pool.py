@@ -38,8 +38,8 @@ def all_threads() -> int:
     """How many threads a large run takes: all cores of this process, one in a process that another one has started, and
     no more than NUMBA_NUM_THREADS in the environment."""
     cap = os.environ.get("NUMBA_NUM_THREADS", "")
-    most = min(cores(), int(cap)) if cap.isdigit() and int(cap) > 0 else cores()
-    return 1 if parent_process() is not None else most
+    count = min(cores(), int(cap)) if cap.isdigit() and int(cap) > 0 else cores()
+    return 1 if parent_process() is not None else count
 
 
 class ThreadPool:
@@ -81,13 +81,13 @@ class ThreadPool:
         count, stop = self._choice(choices, clock)
         begun = time.perf_counter()
         if count > 1 and self._ready():
-            found = self._together(count, steps, system, books, samples, clock._replace(stop=stop))
+            result = self._run_together(count, steps, system, books, samples, clock._replace(stop=stop))
         else:
             shared, (alone,) = self._shared_by(1, system, books)
-            found = steps(system, shared, samples, clock._replace(stop=stop), alone)
+            result = steps(system, shared, samples, clock._replace(stop=stop), alone)
         if not isinstance(steps, Loop):  # which may have been compiled
-            self._step_times[count] = (time.perf_counter() - begun) / max(1, found[0] - clock.step)
-        return found
+            self._step_times[count] = (time.perf_counter() - begun) / max(1, result[0] - clock.step)
+        return result
 
     def _choice(self, choices: tuple[int, ...], clock: Clock) -> tuple[int, int]:
         """How many threads take the next steps, and the step before which they stop: as many as were faster, and now
@@ -104,13 +104,13 @@ class ThreadPool:
     def _ready(self) -> bool:
         """Whether all threads are there. Where the machine gives no more, the run goes on with one."""
         if self._pool is None:
-            self._pool, here = ThreadPoolExecutor(self._most, "mjrock"), threading.Barrier(self._most)
+            self._pool, barrier = ThreadPoolExecutor(self._most, "mjrock"), threading.Barrier(self._most)
             try:
                 with interrupts_held_back():
-                    for started in [self._pool.submit(here.wait) for _ in range(self._most)]:
+                    for started in [self._pool.submit(barrier.wait) for _ in range(self._most)]:
                         started.result()
             except RuntimeError:
-                here.abort()
+                barrier.abort()
                 self._most = 1
         return self._most > 1
 
@@ -120,7 +120,7 @@ class ThreadPool:
             self._shared = system.lines, *books.of_threads(system, count)
         return self._shared[1:]
 
-    def _together(
+    def _run_together(
         self, count: int, steps: Steps, system: System, books: Books, samples: Samples, clock: Clock
     ) -> tuple[int, int, bool]:
         """The same steps by some threads. All of them start, or none: they wait for each other."""
@@ -131,9 +131,9 @@ class ThreadPool:
             running: list[Future[tuple[tuple[int, int, bool], float]]] = [
                 self._pool.submit(_timed, steps, system, shared, samples, clock, thread) for thread in threads
             ]
-        found = [one.result() for one in running]
-        self.processor += sum(spent for _, spent in found)
-        return found[0][0]
+        results = [future.result() for future in running]
+        self.processor += sum(spent for _, spent in results)
+        return results[0][0]
 
 
 def _timed(

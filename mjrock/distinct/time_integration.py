@@ -103,13 +103,13 @@ def integrate(setup: Setup, books: Books, samples: Samples, grid: TimeGrid, thre
 def clock_at_start(setup: Setup, grid: TimeGrid) -> Clock:
     """The clock of a run before its first step."""
     memory = setup.memory
-    still = (0.0,) * len(setup.system.axes)
+    standstill = (0.0,) * len(setup.system.axes)
     return Clock(
         h=grid.h,
         steps_per_sample=grid.steps_per_sample,
         stop=0,
         last=grid.last,
-        ground_acceleration_before=still if memory is None else memory.ground_acceleration_before,
+        ground_acceleration_before=standstill if memory is None else memory.ground_acceleration_before,
         end_rotation=setup.end_rotation,
         h_before=0.0 if memory is None else memory.h_before,
         steps_per_check=grid.steps_per_check,
@@ -149,11 +149,11 @@ def broken_laws(setup: Setup, system: System) -> Iterator[str]:
             yield from (f"the law of {names[i]}" for i in unsound(table.rows, table.endless).tolist())
 
 
-def breakdown(what: str, t: float) -> RuntimeError:
+def breakdown(subject: str, t: float) -> RuntimeError:
     """The error of a run whose numbers are no longer finite at a time [s], with what an own law has raised."""
     failed = f"; a law raised {type(ERRORS_OF_LAWS[0]).__name__}: {ERRORS_OF_LAWS[0]}" if ERRORS_OF_LAWS else ""
     remedy = "its numbers are not finite; take a shorter timestep"
-    return RuntimeError(f"{what} breaks down by t = {t:.4g} s: {remedy}{failed}")
+    return RuntimeError(f"{subject} breaks down by t = {t:.4g} s: {remedy}{failed}")
 
 
 def require_sound_rows(system: System) -> None:

@@ -135,7 +135,7 @@ def test_a_motion_that_is_not_finite_ends_the_run_by_name(monkeypatch):
 
 
 def test_a_contact_that_is_not_finite_ends_the_run_by_name(monkeypatch):
-    monkeypatch.setattr(ContactSearch, "_stable", lambda _, found, *rest: np.full(len(found.gap), np.nan))
+    monkeypatch.setattr(ContactSearch, "_shares", lambda _, places, *others: np.full(len(places.gap), np.nan))
     with pytest.raises(RuntimeError, match=r"the contact of (table and falls|falls and table) breaks down by t = 0\.0"):
         mr.solve_explicit(mr.MasonryCase(FALLS, 0.2, settled=False))
 

@@ -176,10 +176,10 @@ def test_a_soft_place_that_presses_stays_soft(monkeypatch):
             kept.append(self.state.share[self.state.pair == pressed[0]].max(initial=0.0))
         pressing = found.gap < 0
         if pressing.any() and not pressed:
-            pressed.append(int(self._numbers(found)[pressing][0]))
+            pressed.append(int(self._pair_numbers(found)[pressing][0]))
         return np.full(len(found.gap), 1.0 if pressed else 0.1)
 
-    monkeypatch.setattr(ContactSearch, "_stable", stable)
+    monkeypatch.setattr(ContactSearch, "_shares", stable)
     masonry = mr.Masonry([GROUND, box(-3, 3, 0, 0.5), box(-0.1, 0.1, 0.501, 0.6)], k_n=1e8, friction=0.1, xi=0.1)
     mr.solve_explicit(mr.MasonryCase(masonry, 0.3, velocity=[(0, 0, 0), (1.0, 0, 0)], settled=False))
     assert kept[:5] == [0.1] * 5  # until it bounces off

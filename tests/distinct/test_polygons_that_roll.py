@@ -97,5 +97,5 @@ def test_a_joint_ends_before_the_next_side_of_a_polygon_lands(sides):
         masonry = mr.Masonry([ground, blocks[1]], points=2)
         width = sum(joint.width for joint in masonry.joints)
         standing = mr.MasonryCase(masonry, 1.0).rest_geometry
-        np.testing.assert_allclose(contact_search._rolled(standing), 1 - math.cos(math.pi / sides), rtol=1e-9)
+        np.testing.assert_allclose(contact_search._rolling_limits(standing), 1 - math.cos(math.pi / sides), rtol=1e-9)
         assert width == pytest.approx(2 * RADIUS * math.sin(math.pi / sides))

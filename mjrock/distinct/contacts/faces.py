@@ -52,19 +52,19 @@ def edges_of(faces: Sequence[Face], origins: Array, met: Sequence[Face]) -> tupl
     begin = np.cumsum([0, *(len(face.edge_normals) for face in faces)])
     edges = rows(kinds(origins.shape[1]).edge, int(begin[-1]))
     pairs = zip(faces, met, strict=True)
-    shapes = np.array([(len(one.edge_normals), len(one.corners), len(other.corners)) for one, other in pairs])
+    shapes = np.array([(len(face.edge_normals), len(face.corners), len(other.corners)) for face, other in pairs])
     for shape in np.unique(shapes, axis=0):
-        which = np.flatnonzero((shapes == shape).all(axis=1)).tolist()
+        alike = np.flatnonzero((shapes == shape).all(axis=1)).tolist()
         normals, corners, others = (
-            np.array(each)
-            for each in zip(*((faces[i].edge_normals, faces[i].corners, met[i].corners) for i in which), strict=True)
+            np.array(part)
+            for part in zip(*((faces[i].edge_normals, faces[i].corners, met[i].corners) for i in alike), strict=True)
         )
         along = normals.swapaxes(1, 2)
-        places = (corners - origins[which][:, None]) @ along  # (faces, corners, edges)
+        places = (corners - origins[alike][:, None]) @ along  # (faces, corners, edges)
         extent = np.minimum(np.ptp(places, axis=1), np.ptp(others @ along, axis=1))
-        of = begin[which][:, None] + np.arange(len(normals[0]))
-        edges["normal"][of], edges["reach"][of] = normals, places.max(axis=1) + OVERHANG * extent
-        edges["band"][of] = OVERHANG * (1 + 2 * OVERHANG) * extent
+        index = begin[alike][:, None] + np.arange(len(normals[0]))
+        edges["normal"][index], edges["reach"][index] = normals, places.max(axis=1) + OVERHANG * extent
+        edges["band"][index] = OVERHANG * (1 + 2 * OVERHANG) * extent
     return edges, begin
 
 
@@ -72,10 +72,10 @@ def margins(lines: Rows, edges: Rows) -> Array:
     """Square of the smallest distance of each line from the end of its face [m2], shape (m,)."""
     margin, counts = np.empty(len(lines)), lines["last"] - lines["first"]
     for count in np.unique(counts):
-        which = np.flatnonzero(counts == count)
-        of = lines["first"][which][:, None] + np.arange(count)
-        along = (edges["normal"][of] @ lines["origin"][which][:, :, None])[:, :, 0]
-        margin[which] = np.maximum((edges["reach"][of] - along).min(axis=1), 0.0)
+        numbers = np.flatnonzero(counts == count)
+        edge_numbers = lines["first"][numbers][:, None] + np.arange(count)
+        along = (edges["normal"][edge_numbers] @ lines["origin"][numbers][:, :, None])[:, :, 0]
+        margin[numbers] = np.maximum((edges["reach"][edge_numbers] - along).min(axis=1), 0.0)
     return margin**2
 
 
@@ -172,13 +172,13 @@ def past_face_edge(system: System, line: Row, offset: Vector, meet: Meeting) -> 
         return meet
     over = minus(reached, inside)
     from_outline = plus(scaled(meet.gap, meet.normal), over if fixed else in_world(face, over))  # from the outline
-    own = in_world(body, read(line.normal))
-    gap = dot(own, from_outline)
-    along = minus(from_outline, scaled(gap, own))
+    own_normal = in_world(body, read(line.normal))
+    gap = dot(own_normal, from_outline)
+    along = minus(from_outline, scaled(gap, own_normal))
     place = minus(read(line.at), in_body(body, along))
     if is_beside(system.edges, line.own_first, line.own_last, place):
         gap = GAP_OF_OPEN
-    normal = plus(meet.normal, scaled(min(share, 1.0), minus(own, meet.normal)))
+    normal = plus(meet.normal, scaled(min(share, 1.0), minus(own_normal, meet.normal)))
     normal = scaled(1 / norm(normal), normal)
     return Meeting(gap, normal, minus(meet.arm, along), minus(meet.face_arm, along), True)
 

@@ -78,10 +78,10 @@ def turned_along(normal: Vector, a: Vector) -> Vector:
     if len(a) == 1:
         return a
     off = dot(normal, a)
-    along, whole = minus(a, scaled(off, normal)), dot(a, a)
-    if off * off <= ROUNDED_ALONG * whole or off * off >= whole:
+    along, square = minus(a, scaled(off, normal)), dot(a, a)
+    if off * off <= ROUNDED_ALONG * square or off * off >= square:
         return along
-    return scaled(math.sqrt(whole / (whole - off * off)), along)
+    return scaled(math.sqrt(square / (square - off * off)), along)
 
 
 @inlined
@@ -261,9 +261,9 @@ def impulses_of(system: System, first: int, like: Vector) -> Vector:
 
 
 @inlined
-def begin(system: System, line: Row, first: int, most: float, force_time: float, like: Vector) -> None:
+def begin(system: System, line: Row, first: int, friction: float, force_time: float, like: Vector) -> None:
     """Start the impulses of a line from the friction of the last step, within what the face can carry now [N]."""
-    limit: float = force_time * most
+    limit: float = force_time * friction
     impulse = scaled(force_time, read(line.shear_state))
     if line.face >= 0:
         impulse = in_world(system.bodies[line.face], impulse)
@@ -289,13 +289,13 @@ def stopping(system: System, first: int, like: Vector) -> Vector:
     if len(like) == 2:
         return shortened((a.impulse - slip * a.stiffness,), limit)
     b = system.tangents[first + 1]
-    other = slip_along(system, b) + b.drift
-    impulse = a.impulse - (a.stiffness * slip - a.shared * other)
-    other_impulse = b.impulse - (b.stiffness * other - a.shared * slip)
+    other_slip = slip_along(system, b) + b.drift
+    impulse = a.impulse - (a.stiffness * slip - a.shared * other_slip)
+    other_impulse = b.impulse - (b.stiffness * other_slip - a.shared * slip)
     if impulse * impulse + other_impulse * other_impulse > limit * limit:  # it slips, and friction is against the slip
         half = 0.5 * (a.compliance - b.compliance)
         loosest = 0.5 * (a.compliance + b.compliance) + math.sqrt(half * half + a.coupling * a.coupling)
-        impulse, other_impulse = a.impulse - slip / loosest, b.impulse - other / loosest
+        impulse, other_impulse = a.impulse - slip / loosest, b.impulse - other_slip / loosest
         shorter = min(1.0, limit / math.sqrt(impulse * impulse + other_impulse * other_impulse))
         impulse, other_impulse = shorter * impulse, shorter * other_impulse
     return impulse, other_impulse
@@ -322,20 +322,20 @@ def stick(system: System, active: Integers, count: int, force_time: float) -> No
     every third line, then those after them, and then the rest.
     """
     like = read(system.bodies[0].place)
-    each, largest = len(like) - 1, 0.0
+    directions, largest = len(like) - 1, 0.0
     for i in range(count):
-        largest = max(largest, system.tangents[each * i].limit)
-        strike(system, each * i, impulses_of(system, each * i, like))
+        largest = max(largest, system.tangents[directions * i].limit)
+        strike(system, directions * i, impulses_of(system, directions * i, like))
     for sweep in range(SWEEPS):
         changed = 0.0
         for start in range(STRIDE):
             for turn in range(start, count, STRIDE):
                 i = turn if sweep % 2 else count - 1 - turn
-                changed = max(changed, stop(system, each * i, like))
+                changed = max(changed, stop(system, directions * i, like))
         if changed <= SETTLED * largest:
             break
     for i in range(count):
-        keep_rigid(system, system.lines[active[i]], each * i, force_time, like)
+        keep_rigid(system, system.lines[active[i]], directions * i, force_time, like)
 
 
 @inlined

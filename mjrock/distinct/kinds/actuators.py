@@ -47,9 +47,9 @@ class Actuators(Kind, Histories):
         if not case.actuators:
             return (), cls(cls.table(d, 0), moving((), 1))
         actuators = tuple(case.actuators.values())
-        body = np.array([GROUND if each.block is None else case.body_of(each.block) for each in actuators])
-        direction, single = np.array([each.direction for each in actuators]), (body >= 0)[:, None]
-        at = np.array([each.direction if each.at is None else each.at for each in actuators])
+        body = np.array([GROUND if actuator.block is None else case.body_of(actuator.block) for actuator in actuators])
+        direction, single = np.array([actuator.direction for actuator in actuators]), (body >= 0)[:, None]
+        at = np.array([actuator.direction if actuator.at is None else actuator.at for actuator in actuators])
         at = np.where(single, at - bodies["rest"][body], 0.0)
         change = np.einsum("nij,nj->ni", rotations(bodies)[body], at)
         mean = np.average(bodies["place"], axis=0, weights=bodies["mass"])
@@ -59,11 +59,11 @@ class Actuators(Kind, Histories):
             body=body,
             at=at,
             between=direction,
-            k=np.array([each.stiffness for each in actuators]),
-            c=np.array([each.damping for each in actuators]),
+            k=np.array([actuator.stiffness for actuator in actuators]),
+            c=np.array([actuator.damping for actuator in actuators]),
             reach=(np.where(single, bodies["place"][body] + change, mean) * direction).sum(axis=1),
         )
-        histories = [(each.displacement[0], np.array(each.displacement[1])[:, None]) for each in actuators]
+        histories = [(actuator.displacement[0], np.array(actuator.displacement[1])[:, None]) for actuator in actuators]
         return tuple(case.actuators), cls(table, moving(histories, 1))
 
     def rates(self, bodies: Rows) -> csr_array:
@@ -88,8 +88,8 @@ class Actuators(Kind, Histories):
 
     def resumed(self, before: Self) -> Self:
         """The same ones go on from where those before had driven their blocks."""
-        same = ["body", "at", "between", "k", "c"]
-        if len(before.rows) == len(self.rows) and not (before.rows[same] != self.rows[same]).any():
+        columns = ["body", "at", "between", "k", "c"]
+        if len(before.rows) == len(self.rows) and not (before.rows[columns] != self.rows[columns]).any():
             for name in ("force", "dashpot_force", "reach"):
                 self.rows[name] = before.rows[name]
             self.drives.moved[:] = before.drives.moved

@@ -42,11 +42,11 @@ class Dampers(Kind, Table):
         """They take what the mean of their force of two steps does."""
         for i in range(len(self.rows)):
             damper = self.rows[i]
-            now = pull(damper, system)
-            rate = lengthening(damper, system, now)
+            at_pose = pull(damper, system)
+            rate = lengthening(damper, system, at_pose)
             steps_ahead = damper.steps_ahead if h > 0 else 0.0
             force = -resistance(damper, rate + steps_ahead * (rate - damper.rate))
             damper.rate = rate
             books.links[damper.account] -= 0.5 * h * (force + damper.force) * rate
-            book_support(damper, system, books, now, force, h)
-            push_apart(damper, system, now, force)
+            book_support(damper, system, books, at_pose, force, h)
+            push_apart(damper, system, at_pose, force)

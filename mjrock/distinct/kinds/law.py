@@ -51,7 +51,7 @@ class JointLaw:
             *vectors(2 * d - 3, "shear_state", "shear_force"),  # stretch of the shear spring [m], its last force [N]
             *cls.own_fields,
         ]
-        if twice := {name for name, many in Counter(name for name, *_ in fields).items() if many > 1}:
+        if twice := {name for name, repeats in Counter(name for name, *_ in fields).items() if repeats > 1}:
             raise TypeError(f"{cls.__name__} has {', '.join(sorted(twice))} as a number of a joint too; name one anew")
         return rows(row_type(fields), count)
 
@@ -62,20 +62,20 @@ class JointLaw:
         joints = [i for i, bond in enumerate(contacts.bonds) if type(bond) is cls.bond]
         law = cls(cls.table(scene.bodies.rest.shape[1], len(lines) if joints else 0))  # type: ignore[call-arg]
         for i in joints:
-            which = contacts.joint == i
-            area = np.asarray(contacts.area)[which]
+            of_joint = contacts.joint == i
+            area = np.asarray(contacts.area)[of_joint]
             for name in OF_A_LINE:
-                law.rows[name][which] = lines[name][which]
-            law.rows["share"][which] = area / area.sum()
-            law.begin(lines, which, contacts.bonds[i], area)
+                law.rows[name][of_joint] = lines[name][of_joint]
+            law.rows["share"][of_joint] = area / area.sum()
+            law.begin(lines, of_joint, contacts.bonds[i], area)
         return law
 
-    def begin(self, lines: Rows, which: Flags, bond: Any, area: Array) -> None:
+    def begin(self, lines: Rows, of_joint: Flags, bond: Any, area: Array) -> None:
         """Write the numbers of the lines of one joint, and take over what the law replaces of theirs.
 
         Args:
             lines: all lines.
-            which: those of the joint, shape (lines,).
+            of_joint: those of the joint, shape (lines,).
             bond: of the joint.
             area: of each of its lines [m2].
         """
@@ -107,22 +107,22 @@ class JointLaw:
         line unless a law has others. By the names of its numbers, shape (lines,) each."""
         return {name: np.asarray(self.rows[name]) for name in ("k", "c", "k_s", "c_s")}
 
-    def release(self, lines: Rows, which: Flags) -> None:
+    def release(self, lines: Rows, released: Flags) -> None:
         """Give dry lines back what the law has taken over, where they are handed over."""
-        which = which & (self.rows["k"] > 0)
-        if not which.any():
+        released = released & (self.rows["k"] > 0)
+        if not released.any():
             return
         for name in ("k", "c", "friction", "margin", "shear_state", "shear_force"):
-            lines[name][which] = self.rows[name][which]
+            lines[name][released] = self.rows[name][released]
         for name in ("k", "shear_state", "shear_force", "push"):
-            self.rows[name][which] = 0.0
+            self.rows[name][released] = 0.0
 
-    def contact_rows(self, joint: Integers, found: Rows) -> Rows:
+    def contact_rows(self, joint: Integers, lines: Rows) -> Rows:
         """Rows for lines that are found where blocks are beyond their joints, none where the law ends with its joint.
 
         Args:
             joint: number of a joint of the two blocks of each, or -1.
-            found: the lines, with the springs of dry ones.
+            lines: with the springs of dry ones.
         """
         return self.rows[:0]
 
@@ -149,7 +149,7 @@ class JointLaw:
         """Which lines remember something, by what each joint has for its bond, shape (rows,)."""
         return np.zeros(len(self.rows), dtype=bool)
 
-    def resumed(self, now: Self) -> Self:
+    def resumed(self, from_rest: Self) -> Self:
         """The law with which a run starts that carries on the run of this one, beside that of a start from rest."""
         return self
 

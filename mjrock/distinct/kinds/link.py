@@ -170,36 +170,38 @@ def pull(link: Row, system: System) -> Pull:
 
 
 @inlined
-def push_apart(link: Row, system: System, now: Pull, force: float) -> None:
+def push_apart(link: Row, system: System, at_pose: Pull, force: float) -> None:
     """Add a force along a link on the bodies at both ends [N], positive where it pushes them apart."""
-    add_force(system.bodies[link.body], now.arm, scaled(force, now.direction))
+    add_force(system.bodies[link.body], at_pose.arm, scaled(force, at_pose.direction))
     if link.anchor >= 0:
-        add_force(system.bodies[link.anchor], now.anchor_arm, scaled(-force, now.direction))
+        add_force(system.bodies[link.anchor], at_pose.anchor_arm, scaled(-force, at_pose.direction))
 
 
 @inlined
-def lengthening(link: Row, system: System, now: Pull) -> float:
+def lengthening(link: Row, system: System, at_pose: Pull) -> float:
     """Rate of the length of a link [m/s]."""
     body = system.bodies[link.body]
-    velocity = plus(read(body.velocity), spun(read(body.spin), now.arm))
+    velocity = plus(read(body.velocity), spun(read(body.spin), at_pose.arm))
     if link.anchor >= 0:
         anchor = system.bodies[link.anchor]
-        velocity = minus(velocity, plus(read(anchor.velocity), spun(read(anchor.spin), now.anchor_arm)))
+        velocity = minus(velocity, plus(read(anchor.velocity), spun(read(anchor.spin), at_pose.anchor_arm)))
     elif link.support >= 0:
-        velocity = minus(velocity, vector(system.supports.moving, link.support, now.direction))
-    return dot(now.direction, velocity)
+        velocity = minus(velocity, vector(system.supports.moving, link.support, at_pose.direction))
+    return dot(at_pose.direction, velocity)
 
 
 @inlined
-def book_support(link: Row, system: System, books: Books, now: Pull, force: float, h: float) -> None:
+def book_support(link: Row, system: System, books: Books, at_pose: Pull, force: float, h: float) -> None:
     """Book the work that the support of a link does in a time h, from the force of the last step to this one [N].
 
     The force is then that of the last step."""
-    books.totals[0].ground += 0.5 * h * (link.force + force) * carried_along(link, system, now)
+    books.totals[0].ground += 0.5 * h * (link.force + force) * carried_along(link, system, at_pose)
     link.force = force
 
 
 @inlined
-def carried_along(link: Row, system: System, now: Pull) -> float:
+def carried_along(link: Row, system: System, at_pose: Pull) -> float:
     """Velocity along a link of the support that it is anchored on, zero for none [m/s]."""
-    return dot(now.direction, vector(system.supports.moving, link.support, now.direction)) if link.support >= 0 else 0.0
+    if link.support < 0:
+        return 0.0
+    return dot(at_pose.direction, vector(system.supports.moving, link.support, at_pose.direction))

@@ -40,9 +40,9 @@ def numbered(links: Tables) -> Tables:
     """Links whose rows have the numbers of their links and of their accounts."""
     number = account = 0
     for table in links:
-        each, booked = np.arange(len(table.rows)), len(table.booked)
-        table.rows["number"], table.rows["account"] = number + each, account + booked * each
-        number, account = number + len(each), account + booked * len(each)
+        numbers, booked = np.arange(len(table.rows)), len(table.booked)
+        table.rows["number"], table.rows["account"] = number + numbers, account + booked * numbers
+        number, account = number + len(numbers), account + booked * len(numbers)
     return links
 
 
@@ -99,11 +99,11 @@ def stored_by_laws(laws: Tables) -> tuple[float, float]:
 def lost_by_laws(laws: Tables, p: int) -> float:
     """Share of what its law holds that line p has lost, times its part of the area of its joint [-]."""
     if len(laws) > 0:
-        here = 0.0
+        share = 0.0
         if p < len(laws[0].rows):
             row = laws[0].rows[p]
-            here = row.share * lost(laws[0], row)
-        return here + lost_by_laws(laws[1:], p)
+            share = row.share * lost(laws[0], row)
+        return share + lost_by_laws(laws[1:], p)
     return 0.0
 
 

@@ -52,9 +52,9 @@ class Bonds(JointLaw, Table):
     bond: ClassVar[type[Bond]] = Bond
     endless: ClassVar[tuple[str, ...]] = (*JointLaw.endless, "strength")
 
-    def begin(self, lines: Rows, which: Flags, bond: Bond, area: Array) -> None:
+    def begin(self, lines: Rows, of_joint: Flags, bond: Bond, area: Array) -> None:
         """Strengths are those of the mortar times the area of each line."""
-        bonds, friction = self.rows, lines["friction"][which]
+        bonds, friction = self.rows, lines["friction"][of_joint]
         residual = friction if bond.residual_friction is None else np.full(len(area), bond.residual_friction)
         columns = {
             "integrity": 1.0,
@@ -70,12 +70,12 @@ class Bonds(JointLaw, Table):
         if bond.crushing is not None and bond.crushing_energy is not None:
             columns["peak"], columns["hardening"] = bond.crushing * area, bond.hardening or 0.0
             columns["crushing_rate"] = bond.crushing / (bond.crushing_energy - bond.energy_of_hardening)
-        lines["friction"][which], lines["shear_state"][which] = 0.0, 0.0
+        lines["friction"][of_joint], lines["shear_state"][of_joint] = 0.0, 0.0
         if bond.tension > 0:
-            columns["secant"] = lines["k"][which]
-            lines["k"][which], lines["c"][which], lines["margin"][which] = 0.0, 0.0, np.inf
+            columns["secant"] = lines["k"][of_joint]
+            lines["k"][of_joint], lines["c"][of_joint], lines["margin"][of_joint] = 0.0, 0.0, np.inf
         for name, column in columns.items():
-            bonds[name][which] = column
+            bonds[name][of_joint] = column
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
@@ -108,16 +108,16 @@ class Bonds(JointLaw, Table):
         """Whether its bond has not gone."""
         return bool(row.k > 0 and row.tension > 0 and row.integrity > INTEGRITY_OF_LOST)
 
-    def release(self, lines: Rows, which: Flags) -> None:
+    def release(self, lines: Rows, released: Flags) -> None:
         """The secants go too."""
-        self.rows["secant"][which & (self.rows["k"] > 0)] = 0.0
-        super().release(lines, which)
+        self.rows["secant"][released & (self.rows["k"] > 0)] = 0.0
+        super().release(lines, released)
 
     def has_changed(self, bonds: tuple[Any, ...]) -> Flags:
         """Those that have lost a part of it."""
         return np.asarray((self.rows["share"] > 0) & (self.rows["integrity"] < 1))
 
-    def resumed(self, now: Self) -> Self:
+    def resumed(self, from_rest: Self) -> Self:
         """Ages count from the start of each run."""
         self.rows["age"] = 0.0
         return self
@@ -209,10 +209,10 @@ def hold_line(system: System, books: Books, line: Row, bond: Row, h: float) -> N
     elongation = stretched(bodies, line.face, bond.shear_state, meet.normal, scaled(h, slip))
     friction, dissipated = slide(bodies, line, bond, elongation, slip, push + normal_force(line, gap, rate))
     mean = scaled(0.5 * h, plus(last, friction))
-    done = -dot(mean, slip)
-    dissipated = min(dissipated, max(done + stored_before - sheared(bond), 0.0))  # no more than there is
+    friction_work = -dot(mean, slip)
+    dissipated = min(dissipated, max(friction_work + stored_before - sheared(bond), 0.0))  # no more than there is
     books.totals[0].slip += dissipated
-    books.totals[0].friction += done - dissipated
+    books.totals[0].friction += friction_work - dissipated
     if line.support >= 0:
         work = plus(scaled(0.5 * h * (bond.push + push), meet.normal), as_vector(meet.normal, mean))
         books.totals[0].ground += carried(line, supports, work)

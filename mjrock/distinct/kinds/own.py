@@ -49,13 +49,13 @@ AS_PYTHON = "laws"
 """Value of MJROCK_INTERPRET with which own laws run as plain Python in compiled loops."""
 
 
-def _by_ctypes(values: Array, address: int, closing: float, rate: float) -> None:
+def _call_by_ctypes(values: Array, address: int, closing: float, rate: float) -> None:
     SIGNATURE(int(address))(values.ctypes.data, closing, rate)
 
 
 def _choice(values: Any) -> Any:
     if isinstance(values, np.ndarray):
-        return _by_ctypes
+        return _call_by_ctypes
     from .own_calls import called  # which imports numba
 
     return called
@@ -110,17 +110,17 @@ class OwnLaws(JointLaw, Table):
         weight, joint = GRAVITY * float(scene.bodies.mass.sum()), scene.contacts.joint
         for i, bond in enumerate(scene.contacts.bonds):
             if isinstance(bond, Own):
-                which = joint == i
-                law.rows["joint"][which] = i
-                area = np.asarray(scene.contacts.area)[which]
-                deepest = max(float(scene.bears[which].max()), closing_at(bond, weight / float(area.sum())))
+                of_joint = joint == i
+                law.rows["joint"][of_joint] = i
+                area = np.asarray(scene.contacts.area)[of_joint]
+                deepest = max(float(scene.bears[of_joint].max()), closing_at(bond, weight / float(area.sum())))
                 k, c = stiffest(bond, CLOSING_OF_STABLE_STEPS * deepest)
-                lines["k"][which] = np.where(law.rows["pulls"][which] > 0, 0.0, k * area)
-                law.rows["stiffest"][which] = k * area
-                law.rows["strongest"][which] = c * area if bond.damps else law.rows["c"][which]
+                lines["k"][of_joint] = np.where(law.rows["pulls"][of_joint] > 0, 0.0, k * area)
+                law.rows["stiffest"][of_joint] = k * area
+                law.rows["strongest"][of_joint] = c * area if bond.damps else law.rows["c"][of_joint]
         return law
 
-    def begin(self, lines: Rows, which: Flags, bond: Own, area: Array) -> None:
+    def begin(self, lines: Rows, of_joint: Flags, bond: Own, area: Array) -> None:
         """Write the numbers of a law into its rows. A law that pulls holds its lines alone; their faces have no end."""
         columns: dict[str, Any] = {
             "address": address_of(type(bond.law)),
@@ -131,11 +131,11 @@ class OwnLaws(JointLaw, Table):
             "values": bond.values,
         }
         for name, column in columns.items():
-            self.rows[name][which] = column
+            self.rows[name][of_joint] = column
         if bond.damps:
-            lines["c"][which] = 0.0
+            lines["c"][of_joint] = 0.0
         if bond.pulls:
-            lines["k"][which], lines["c"][which], lines["margin"][which] = 0.0, 0.0, np.inf
+            lines["k"][of_joint], lines["c"][of_joint], lines["margin"][of_joint] = 0.0, 0.0, np.inf
 
     @inlined
     def act(self, system: System, books: Books, t: float, h: float) -> None:
@@ -176,28 +176,28 @@ class OwnLaws(JointLaw, Table):
         dry = super().springs()
         return dry | {"k": np.asarray(self.rows["stiffest"]), "c": np.asarray(self.rows["strongest"])}
 
-    def release(self, lines: Rows, which: Flags) -> None:
+    def release(self, lines: Rows, released: Flags) -> None:
         """A line that only presses keeps the spring of its law."""
         for name in ("k", "push", "shear_force"):
-            self.rows[name][: len(which)][which] = 0.0
+            self.rows[name][: len(released)][released] = 0.0
 
-    def contact_rows(self, joint: Integers, found: Rows) -> Rows:
+    def contact_rows(self, joint: Integers, lines: Rows) -> Rows:
         """The law of a place is scaled by its spring, and presses only. A law with a memory ends with its joint: a new
         place would have to harden again."""
         added = rows(self.rows.dtype, len(joint) if len(self.rows) else 0)
         lasting = (self.rows["address"] != 0) & (self.rows["remembers"] == 0)
         for i in np.unique(self.rows["joint"][lasting]).tolist():
-            which = joint == i
+            of_joint = joint == i
             first = np.flatnonzero((self.rows["address"] != 0) & (self.rows["joint"] == i))[:1]
-            law = chosen(self.rows, np.repeat(first, which.sum()))
-            part = found["k"][which] / law["area"] / law["values"][:, OF_K_N]
+            law = chosen(self.rows, np.repeat(first, of_joint.sum()))
+            part = lines["k"][of_joint] / law["area"] / law["values"][:, OF_K_N]
             for name in ("area", "stiffest", "strongest"):
                 law[name] *= part
-            law["k"], law["c"], law["pulls"] = found["k"][which], found["c"][which], 0.0
+            law["k"], law["c"], law["pulls"] = lines["k"][of_joint], lines["c"][of_joint], 0.0
             law["values"][:, : len(ANSWERS)] = 0.0
             for name in ("push", "dashpot_force", "gap", "shear_state", "shear_force"):
                 law[name] = 0.0
-            added[which] = law
+            added[of_joint] = law
         return added
 
     def with_search_lines(self, count: int, kept: Flags, added: Rows) -> Self:
@@ -212,7 +212,7 @@ class OwnLaws(JointLaw, Table):
         if not len(laws):
             return springs
         k, c = (
-            np.where(laws["k"] > 0, laws[most], springs[name]) for name, most in (("k", "stiffest"), ("c", "strongest"))
+            np.where(laws["k"] > 0, laws[key], springs[name]) for name, key in (("k", "stiffest"), ("c", "strongest"))
         )
         return springs | {"k": k, "c": c}
 
@@ -242,10 +242,10 @@ class OwnLaws(JointLaw, Table):
             changed[i] = (row["values"][known] != bonds[row["joint"]].values[known]).any()
         return changed
 
-    def resumed(self, now: Self) -> Self:
+    def resumed(self, from_rest: Self) -> Self:
         """The rows of an earlier process, with the addresses that the compiled laws have in this one."""
         has_law = self.rows["address"] != 0
-        addresses = dict(zip(now.rows["joint"].tolist(), now.rows["address"].tolist(), strict=True))
+        addresses = dict(zip(from_rest.rows["joint"].tolist(), from_rest.rows["address"].tolist(), strict=True))
         self.rows["address"][has_law] = [addresses[joint] for joint in self.rows["joint"][has_law].tolist()]
         return self
 

@@ -27,12 +27,12 @@ def _call(
     signature = types.void(values, types.int64, types.float64, types.float64)
 
     def generated(
-        context: BaseContext, builder: ir.IRBuilder, signature: Signature, given: Sequence[ir.Value]
+        context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: Sequence[ir.Value]
     ) -> ir.Value:
-        values, address, closing, rate = given
+        values, address, closing, rate = arguments
         array = context.make_array(signature.args[0])(context, builder, values)
-        kind = ir.FunctionType(C_NOTHING, [C_BYTES, C_NUMBER, C_NUMBER])
-        function = builder.inttoptr(address, kind.as_pointer())
+        function_type = ir.FunctionType(C_NOTHING, [C_BYTES, C_NUMBER, C_NUMBER])
+        function = builder.inttoptr(address, function_type.as_pointer())
         builder.call(function, [builder.bitcast(array.data, C_BYTES), closing, rate])
         return context.get_dummy_value()
 
@@ -51,7 +51,7 @@ def compiled_text(kind: Any) -> Any:
         TypeError: with the name of the law, for what numba cannot compile.
     """
     row = numba.from_dtype(layout(kind))
-    made = {}
+    methods = {}
     for name, count in kind.methods.items():
         method = numba.njit(**OF_COMPILER)(getattr(kind, name))
         try:
@@ -63,8 +63,8 @@ def compiled_text(kind: Any) -> Any:
                 f"{kind.__name__}.{name} cannot be compiled: {reason}. A law takes numbers and functions of math, and "
                 "functions of its own under numba.njit; MJROCK_INTERPRET=laws runs it as plain Python"
             ) from None
-        made[getattr(kind, name)] = method
-    answer, kinds = numba.njit(**OF_COMPILER)(kind.answering(made.__getitem__)), layout(kind)
+        methods[getattr(kind, name)] = method
+    answer, kinds = numba.njit(**OF_COMPILER)(kind.answering(methods.__getitem__)), layout(kind)
 
     def text(values: Any, closing: float, rate: float) -> None:
         answer(numba.carray(values, (1,), kinds)[0], closing, rate)

@@ -62,11 +62,11 @@ class OwnLinks(Kind, Table):
         """They answer at the pose, and what their dashpots and memories take of the work is booked."""
         for i in range(len(self.rows)):
             link = self.rows[i]
-            now = pull(link, system)
-            rate = lengthening(link, system, now)
+            at_pose = pull(link, system)
+            rate = lengthening(link, system, at_pose)
             ahead = rate + (link.steps_ahead if h > 0 else 0.0) * (rate - link.rate)
             bears, energy_before = link.values[OF_STRESS], link.values[OF_ENERGY]
-            call_law(link.values, link.address, now.length - link.reach, ahead)
+            call_law(link.values, link.address, at_pose.length - link.reach, ahead)
             dashpot_force = link.values[OF_DAMPING]
             books.links[link.account] += 0.5 * h * (link.dashpot_force + dashpot_force) * rate
             if link.values[OF_DISSIPATED] != 0 and h > 0:
@@ -74,8 +74,8 @@ class OwnLinks(Kind, Table):
                 books.links[link.account] += work - (link.values[OF_ENERGY] - energy_before)
             link.rate, link.dashpot_force = rate, dashpot_force
             force = -link.values[OF_STRESS] - dashpot_force
-            book_support(link, system, books, now, force, h)
-            push_apart(link, system, now, force)
+            book_support(link, system, books, at_pose, force, h)
+            push_apart(link, system, at_pose, force)
 
     @inlined
     def add_energy(self, system: System, books: Books, energy: Row) -> None:

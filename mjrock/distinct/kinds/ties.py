@@ -53,27 +53,27 @@ class Ties(Kind, Table):
             if t >= tie.broken:
                 tie.force = 0.0
                 continue
-            now = pull(tie, system)
-            meet_or_leave(tie, system, books, now, h)
-            beyond = now.length - tie.reach - tie.strength / tie.k
-            shorter = tie.reach - now.length - tie.push / tie.k
+            at_pose = pull(tie, system)
+            meet_or_leave(tie, system, books, at_pose, h)
+            beyond = at_pose.length - tie.reach - tie.strength / tie.k
+            shorter = tie.reach - at_pose.length - tie.push / tie.k
             if beyond > 0:  # it yields, and breaks where it has been drawn out as far as it can be
                 remaining = tie.ultimate - tie.plastic
                 tie.plastic, tie.reach = tie.plastic + min(beyond, remaining), tie.reach + min(beyond, remaining)
                 books.links[tie.account] += tie.strength * min(beyond, remaining)
                 if beyond >= remaining:
-                    since = since_broken(beyond - remaining, lengthening(tie, system, now), h)
-                    book_support(tie, system, books, now, -tie.strength, h - since)
+                    since = since_broken(beyond - remaining, lengthening(tie, system, at_pose), h)
+                    book_support(tie, system, books, at_pose, -tie.strength, h - since)
                     tie.broken, books.links[tie.account + 1] = t - since, 0.5 * tie.strength**2 / tie.k
                     tie.force = -pulled_until_broken(tie, since, h)
-                    push_apart(tie, system, now, tie.force)
+                    push_apart(tie, system, at_pose, tie.force)
                     continue
             elif tie.push > 0 and shorter > 0:  # it slips the other way
                 tie.plastic, tie.reach = tie.plastic + shorter, tie.reach - shorter
                 books.links[tie.account] += tie.push * shorter
-            force = -tie.k * elongation(tie, now.length)
-            book_support(tie, system, books, now, force, h)
-            push_apart(tie, system, now, force + tie.struck)
+            force = -tie.k * elongation(tie, at_pose.length)
+            book_support(tie, system, books, at_pose, force, h)
+            push_apart(tie, system, at_pose, force + tie.struck)
 
     @inlined
     def settle(self, system: System, books: Books, force_time: float) -> tuple[float, float]:
@@ -82,12 +82,12 @@ class Ties(Kind, Table):
         for i in range(len(self.rows)):
             tie = self.rows[i]
             if tie.due != 0:
-                now = pull(tie, system)
-                impulse = due_impulse(tie, lengthening(tie, system, now))
-                apply_impulse_at(system.bodies[tie.body], now.arm, scaled(impulse, now.direction))
+                at_pose = pull(tie, system)
+                impulse = due_impulse(tie, lengthening(tie, system, at_pose))
+                apply_impulse_at(system.bodies[tie.body], at_pose.arm, scaled(impulse, at_pose.direction))
                 if tie.anchor >= 0:
-                    apply_impulse_at(system.bodies[tie.anchor], now.anchor_arm, scaled(-impulse, now.direction))
-                put_in += 0.5 * impulse * carried_along(tie, system, now)
+                    apply_impulse_at(system.bodies[tie.anchor], at_pose.anchor_arm, scaled(-impulse, at_pose.direction))
+                put_in += 0.5 * impulse * carried_along(tie, system, at_pose)
                 dissipated -= 0.5 * impulse * tie.rate
                 tie.struck, tie.due = tie.struck + impulse / force_time, 0.0
         books.totals[0].ground += put_in
@@ -104,28 +104,28 @@ class Ties(Kind, Table):
 
 
 @inlined
-def meet_or_leave(tie: Row, system: System, books: Books, now: Pull, h: float) -> None:
+def meet_or_leave(tie: Row, system: System, books: Books, at_pose: Pull, h: float) -> None:
     """Write what a tie that only pulls does beyond its law in the last step, of length h, where it has gone taut or
     slack, or begun to yield in it. The forces at the poses before and after the step act for half of it each, and the
     tie pulled less or more than that."""
-    books.totals[0].ground += 0.5 * h * tie.struck * carried_along(tie, system, now)
+    books.totals[0].ground += 0.5 * h * tie.struck * carried_along(tie, system, at_pose)
     tie.struck = tie.due = tie.transit = 0.0
     if tie.push > 0 or h == 0:
         return
-    tie.rate = lengthening(tie, system, now)
-    longer, pull_before = now.length - tie.reach, -tie.force
+    tie.rate = lengthening(tie, system, at_pose)
+    longer, pull_before = at_pose.length - tie.reach, -tie.force
     if longer > 0 and tie.rate > 0 and (pull_before == 0 or tie.k * longer > tie.strength > pull_before):
         taut = min(longer / tie.rate, h) if pull_before == 0 else h
-        most = min(tie.k * longer, tie.strength)
-        rising = min((most - pull_before) / (tie.k * tie.rate), taut)
-        tie.struck = 0.5 * (pull_before + most) + (0.5 * (most - pull_before) * rising - most * taut) / h
-        tie.due = -0.5 * tie.k * taut * (h - taut) if most < tie.strength else 0.0
+        peak = min(tie.k * longer, tie.strength)
+        rising = min((peak - pull_before) / (tie.k * tie.rate), taut)
+        tie.struck = 0.5 * (pull_before + peak) + (0.5 * (peak - pull_before) * rising - peak * taut) / h
+        tie.due = -0.5 * tie.k * taut * (h - taut) if peak < tie.strength else 0.0
     elif longer <= 0 and pull_before > 0 and tie.rate < 0:
         taut = min(pull_before / (tie.k * -tie.rate), h)
         tie.struck = 0.5 * pull_before * (h - taut) / h
         tie.due = 0.5 * tie.k * taut * (h - taut)
     tie.transit = 0.5 * h * tie.struck * tie.rate
-    books.totals[0].ground += 0.5 * h * tie.struck * carried_along(tie, system, now)
+    books.totals[0].ground += 0.5 * h * tie.struck * carried_along(tie, system, at_pose)
 
 
 @inlined

@@ -98,8 +98,8 @@ def is_before(solids: Solids, face: int, other: int) -> bool:
 @inlined
 def sides_between(solids: Solids, faces: tuple[int, int]) -> int:
     """A number of the pair of sides on which two faces lie."""
-    one, other = solids.side[faces[0]], solids.side[faces[1]]
-    number: int = min(one, other) * len(solids.side) + max(one, other)
+    side, other_side = solids.side[faces[0]], solids.side[faces[1]]
+    number: int = min(side, other_side) * len(solids.side) + max(side, other_side)
     return number
 
 
@@ -171,8 +171,8 @@ def area_of(polygon: Array, count: int) -> float:
     """Area of a polygon [m2]."""
     first, area = triple(polygon, 0), 0.0
     for i in range(1, count - 1):
-        one, next_one = triple(polygon, i), triple(polygon, i + 1)
-        area += 0.5 * norm(spun(minus(one, first), minus(next_one, first)))
+        corner, following = triple(polygon, i), triple(polygon, i + 1)
+        area += 0.5 * norm(spun(minus(corner, first), minus(following, first)))
     return area
 
 
@@ -216,24 +216,24 @@ def write_corner(solids: Solids, faces: tuple[int, int], blocks: tuple[int, int]
     crossed, from_crossed, one_place = -1, math.inf, ONE_PLACE * longest_edge(solids, face)
     for i in range(solids.first[face], solids.first[face + 1]):
         corner = corner_of(solids, i)
-        own, off = minus(next_corner(solids, face, i), corner), minus(at, corner)
+        edge_below, off = minus(next_corner(solids, face, i), corner), minus(at, corner)
         off = minus(off, scaled(dot(off, normal), normal))
         if norm(off) < one_place:
             normal = normal_of(solids, over)
             gap = dot(normal, minus(corner, corner_of(solids, solids.first[over])))
             write_place(place, (blocks[1], blocks[0]), corner, normal, gap)
             return
-        distance = distance_from(off, scaled(0.0, own), own)
+        distance = distance_from(off, scaled(0.0, edge_below), edge_below)
         if distance < from_crossed:
             crossed, from_crossed = i, distance
     below = corner_of(solids, crossed)
-    own, along = (
+    edge_below, along = (
         minus(next_corner(solids, face, crossed), below),
         minus(next_corner(solids, over, edge), corner_of(solids, edge)),
     )
-    common = spun(along, own)
+    common = spun(along, edge_below)
     size = norm(common)
-    if abs(dot(common, normal)) > EDGES_ALONG_FACE * size and size > PARALLEL_EDGES * norm(along) * norm(own):
+    if abs(dot(common, normal)) > EDGES_ALONG_FACE * size and size > PARALLEL_EDGES * norm(along) * norm(edge_below):
         normal = scaled(math.copysign(1 / size, dot(common, normal)), common)
     write_place(place, blocks, at, normal, dot(normal, minus(at, below)))
 
@@ -316,12 +316,12 @@ def node_number(grid: Grid, quad: int, i: int, j: int) -> int:
     the centroid is a node of all."""
     if grid.quads == 1:
         return i * (grid.cells_t + 1) + j
-    side, each = grid.cells_s, grid.cells_s * (grid.cells_s + 1)
+    side, nodes_of_quad = grid.cells_s, grid.cells_s * (grid.cells_s + 1)
     if j < side:
-        return quad * each + i * side + j
+        return quad * nodes_of_quad + i * side + j
     if i < side:
-        return (quad - 1 if quad > 0 else grid.quads - 1) * each + side * side + i
-    return grid.quads * each
+        return (quad - 1 if quad > 0 else grid.quads - 1) * nodes_of_quad + side * side + i
+    return grid.quads * nodes_of_quad
 
 
 @inlined
@@ -330,21 +330,21 @@ def middle_of(polygon: Array, count: int) -> Vector:
     first, area = triple(polygon, 0), 0.0
     off = scaled(0.0, first)
     for i in range(1, count - 1):
-        one, other = minus(triple(polygon, i), first), minus(triple(polygon, i + 1), first)
-        part = norm(spun(one, other))
-        area, off = area + part, plus(off, scaled(part / 3, plus(one, other)))
+        to_corner, to_next = minus(triple(polygon, i), first), minus(triple(polygon, i + 1), first)
+        part = norm(spun(to_corner, to_next))
+        area, off = area + part, plus(off, scaled(part / 3, plus(to_corner, to_next)))
     return plus(first, scaled(1 / area, off))
 
 
 @inlined
 def quad_of(polygon: Array, grid: Grid, quad: int, middle: Vector) -> Quad:
     """One of the quadrilaterals of a common area."""
-    here = triple(polygon, quad)
+    corner = triple(polygon, quad)
     after = triple(polygon, (quad + 1) % grid.corners)
     before = triple(polygon, (quad + grid.corners - 1) % grid.corners)
     if grid.quads == 1:
-        return here, after, triple(polygon, 2), before
-    return here, scaled(0.5, plus(here, after)), middle, scaled(0.5, plus(here, before))
+        return corner, after, triple(polygon, 2), before
+    return corner, scaled(0.5, plus(corner, after)), middle, scaled(0.5, plus(corner, before))
 
 
 @inlined

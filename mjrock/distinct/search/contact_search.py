@@ -106,28 +106,28 @@ class ContactSearch:
         body, drawn = np.array([solid.body for solid in solids]), np.array([solid.rest for solid in solids])
         flat = len(scene.freedom.axes) == 2
         drawn = drawn[:, ::2].copy() if flat else drawn
-        still = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
+        as_drawn = Poses(drawn, np.zeros_like(drawn), np.zeros((*drawn.shape, drawn.shape[1])))
         fixed = np.where(body < 0, np.cumsum(body < 0) - 1, -1)
-        self.blocks = Blocks(still, self.sizes, np.flatnonzero(body >= 0), body, fixed, np.full(self.count, -1))
+        self.blocks = Blocks(as_drawn, self.sizes, np.flatnonzero(body >= 0), body, fixed, np.full(self.count, -1))
         self.finder = Finder(solids, flat=flat)
         self.law = PairLaw.of_joints(scene, system.lines)
         inverse_mass = np.append(1 / scene.bodies.mass, 0.0)[body]
         self.flat_impacts, slowest = self.law.meetings(inverse_mass)
         self.longest_steps = longest_steps_of(solids, self.law, slowest, system)
-        below, above = np.array([(each.below, each.above) for each in joints]).T
-        of = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
+        below, above = np.array([(joint.below, joint.above) for joint in joints]).T
+        pair_of_joint = np.searchsorted(self.law.jointed, pair_number(below, above, self.count))
         left, rolled = np.full((2, len(self.law.jointed)), np.inf)
-        np.minimum.at(left, of, HANDOVER_OPENING * np.array([joint.width for joint in joints]))
-        np.minimum.at(rolled, of, _rolled(scene.rest_geometry))
-        self.first_joint = np.unique(of, return_index=True)[1]
-        self.jointed, points = _jointed(scene, self.finder, of)
+        np.minimum.at(left, pair_of_joint, HANDOVER_OPENING * np.array([joint.width for joint in joints]))
+        np.minimum.at(rolled, pair_of_joint, _rolling_limits(scene.rest_geometry))
+        self.first_joint = np.unique(pair_of_joint, return_index=True)[1]
+        self.jointed, points = _jointed_pairs(scene, self.finder, pair_of_joint)
         self.finder.jointed, first = np.unique(self.jointed[1], return_index=True)
         self.finder.points = np.maximum.reduceat(points, first)
         self.line_type, start = system.lines.dtype, self.poses(system)
         interval = longest_interval(self.sizes[self.blocks.free])
         self.limits = Limits(start, self._limits(start), VALID_DISPLACEMENT * self.sizes, interval)
         blocks = np.column_stack(np.divmod(self.law.jointed, self.count))
-        self.motion, self.joints = Motion.initial(start), JointState.intact(of[joint], blocks, left, rolled)
+        self.motion, self.joints = Motion.initial(start), JointState.intact(pair_of_joint[joint], blocks, left, rolled)
         self.state = self._no_contacts()
 
     def begun(self, supports: tuple[str, ...]) -> ContactSearch:
@@ -152,21 +152,21 @@ class ContactSearch:
         """How far each block may move from where it stands before its contacts are searched [m], shape (blocks,). Both
         blocks of a pair may. One that is not found is farther than the sum of both sizes."""
         every, jointed = np.ones(self.count, dtype=bool), np.unique(self.jointed[1])
-        found = self.finder.places_near(start, self.sizes, every, jointed)
-        separate = found.gap > NEAR * np.minimum(self.sizes[found.face], self.sizes[found.other])
+        places = self.finder.places_near(start, self.sizes, every, jointed)
+        separate = places.gap > NEAR * np.minimum(self.sizes[places.face], self.sizes[places.other])
         limits = TOWARDS_OTHERS * self.sizes
-        for block in (found.face, found.other):
-            allowance = np.where(separate, TOWARDS_OTHERS * found.gap, VALID_APPROACH * self.sizes[block])
+        for block in (places.face, places.other):
+            allowance = np.where(separate, TOWARDS_OTHERS * places.gap, VALID_APPROACH * self.sizes[block])
             np.minimum.at(limits, block, allowance)
         return np.asarray(np.maximum(limits, NEAR * self.sizes))
 
-    def _numbers(self, found: ContactPlaces) -> Integers:
-        return pair_number(found.face, found.other, self.count)
+    def _pair_numbers(self, places: ContactPlaces) -> Integers:
+        return pair_number(places.face, places.other, self.count)
 
     def poses(self, system: System) -> Poses:
         """Where all blocks are."""
-        still, free, support = self.blocks.poses, self.blocks.free, self.blocks.support
-        poses = Poses(still.drawn, np.zeros_like(still.moved), np.zeros_like(still.change))
+        as_drawn, free, support = self.blocks.poses, self.blocks.free, self.blocks.support
+        poses = Poses(as_drawn.drawn, np.zeros_like(as_drawn.moved), np.zeros_like(as_drawn.change))
         poses.moved[free], poses.change[free] = system.bodies["place"], rotations(system.bodies)
         poses.moved[support >= 0] = system.supports.moved[support[support >= 0]]
         return poses
@@ -182,16 +182,16 @@ class ContactSearch:
             self.examine = for_types_of(is_outdated, system, examined, state.since)
         if outdated:
             state.handed_over = state.handed_over | joints.left
-            kept = self._searches_of(state.pair) == state.found
+            lasting = self._searches_of(state.pair) == state.found
             intact = self.jointed[1][~state.handed_over[self.jointed[0]]]
             reach = REACH * (validity.ahead + fall_within(self.limits.interval) + NEAR * self.sizes)
-            found = self.finder.places_near(motion.poses, reach, validity.outdated, intact)
-            may_touch = np.empty(len(found.gap), dtype=bool)
-            set_validity(found, motion, self.sizes, validity, may_touch, self.limits.interval)
-            may_touch &= found.share > 0
-            of_gone = np.concatenate([joints.left[joints.pairs], ~kept])
+            places = self.finder.places_near(motion.poses, reach, validity.outdated, intact)
+            may_touch = np.empty(len(places.gap), dtype=bool)
+            set_validity(places, motion, self.sizes, validity, may_touch, self.limits.interval)
+            may_touch &= places.share > 0
+            of_gone = np.concatenate([joints.left[joints.pairs], ~lasting])
             if may_touch.any() or of_gone.any():
-                system = self._with_new_lines(system, books, motion.poses, found.only(may_touch), of_gone, h)
+                system = self._with_lines_at(system, books, motion.poses, places.only(may_touch), of_gone, h)
                 books = books.with_room(system)
         steps = max(1, int(validity.valid_for[validity.searched].min(initial=self.limits.interval) / h))
         state.since = steps * h
@@ -200,92 +200,92 @@ class ContactSearch:
     def _surges(self, system: System, t: float, until: float) -> Array:
         """By how much the velocity of what is driven, a fixed block or one at a link, changes until a time [m/s], shape
         (blocks,)."""
-        found = np.zeros(self.count)
+        surges = np.zeros(self.count)
         if len(system.supports.moved):
             moves = np.flatnonzero(self.blocks.support >= 0)
-            found[moves] = velocity_changes(system.supports, t, until)[self.blocks.support[moves]]
+            surges[moves] = velocity_changes(system.supports, t, until)[self.blocks.support[moves]]
         for table in system.links:
             if len(table.rows):
                 bodies, changes = table.velocity_changes(t, until)
-                np.add.at(found, self.blocks.free[bodies], changes)
-        return found
+                np.add.at(surges, self.blocks.free[bodies], changes)
+        return surges
 
-    def _with_new_lines(
-        self, system: System, books: Books, poses: Poses, found: ContactPlaces, of_gone: Flags, h: float
+    def _with_lines_at(
+        self, system: System, books: Books, poses: Poses, places: ContactPlaces, of_gone: Flags, h: float
     ) -> System:
         """The system with contact lines at these places. Pairs that have not moved keep their lines.
 
         Args:
             system, books: the system, and the account of what the springs of vanished lines have lost.
             poses: of all blocks.
-            found: places that may touch.
+            places: places that may touch.
             of_gone: lines of joints that are handed over, and found ones whose blocks have moved, shape (lines,).
             h: length of a step [s].
         """
         state, count, lines = self.state, len(self.joints.pairs), system.lines
-        joints, others, number = lines[:count], lines[count:], self._numbers(found)
+        joints, others, number = lines[:count], lines[count:], self._pair_numbers(places)
         left_joints, kept, size = of_gone[:count], ~of_gone[count:], len(number)
         bonded = [law for law in system.laws if len(law.rows)]
         for law in bonded:
             law.release(joints[: len(law.rows)], left_joints[: len(law.rows)])
-        pair, which = np.concatenate([self.law.jointed[self.joints.pairs], state.pair]), of_gone.nonzero()[0]
-        which = which[pair[which].argsort(kind="stable")]
+        pair, old_numbers = np.concatenate([self.law.jointed[self.joints.pairs], state.pair]), of_gone.nonzero()[0]
+        old_numbers = old_numbers[pair[old_numbers].argsort(kind="stable")]
         slack, share = (
-            np.concatenate([np.full(count, of_joints), found_ones])[which]
-            for of_joints, found_ones in ((0.0, state.slack), (1.0, state.share))
+            np.concatenate([np.full(count, of_joints), of_found])[old_numbers]
+            for of_joints, of_found in ((0.0, state.slack), (1.0, state.share))
         )
-        gone = Lines.unwritten(chosen(lines, which), slack)
+        old = Lines.unwritten(chosen(lines, old_numbers), slack)
         new = Lines.unwritten(rows(self.line_type, size, group=self.group, margin=np.inf), np.empty(size))
-        before = account(system, which, gone.depth)
-        soft = (share < 1) & (gone.depth > 0)
-        share = least_among(number, pair[which][soft], share[soft])
-        law = self.law.of_places(number, found.share, found.area, self.count)
+        before = account(system, old_numbers, old.depth)
+        soft = (share < 1) & (old.depth > 0)
+        share = least_among(number, pair[old_numbers][soft], share[soft])
+        law = self.law.of_places(number, places.share, places.area, self.count)
         for name, column in law.items():
             new.rows[name] = column
-        own = [(each, each.contact_rows(self._joints_of(number), new.rows)) for each in bonded]
+        law_rows = [(bonded_law, bonded_law.contact_rows(self._joints_of(number), new.rows)) for bonded_law in bonded]
         springs = law
-        for each, added in own:
-            springs = each.stiffest(added, springs)
-        share = np.minimum(share, self._stable(found, springs, poses, system, h))
+        for bonded_law, added in law_rows:
+            springs = bonded_law.stiffest(added, springs)
+        share = np.minimum(share, self._shares(places, springs, poses, system, h))
         for name in SHARED_COLUMNS:
             new.rows[name] *= share
-        blocks, pairs = self.blocks._replace(poses=poses), Pairs.belonging(number, pair[which])
-        keep_depths(new, found, gone, pairs, blocks)
-        for each, added in own:
-            each.soften(added, share)
-            each.set_secant_stiffness(added, new.rows, new.depth)
-        hand_over(new, found, gone, pairs, blocks)
-        for each, added in own:
-            each.set_secant_stiffness(added, new.rows, new.depth)
+        blocks, pairs = self.blocks._replace(poses=poses), Pairs.belonging(number, pair[old_numbers])
+        keep_depths(new, places, old, pairs, blocks)
+        for bonded_law, added in law_rows:
+            bonded_law.soften(added, share)
+            bonded_law.set_secant_stiffness(added, new.rows, new.depth)
+        hand_over(new, places, old, pairs, blocks)
+        for bonded_law, added in law_rows:
+            bonded_law.set_secant_stiffness(added, new.rows, new.depth)
         for place in unsound(new.rows, MAY_BE_INFINITE)[:1]:
-            one, other = (self.names[int(block[place])] for block in (found.face, found.other))
-            raise ArithmeticError(f"the contact of {one} and {other}")
+            block_name, other_name = (self.names[int(block[place])] for block in (places.face, places.other))
+            raise ArithmeticError(f"the contact of {block_name} and {other_name}")
         if left_joints.any():
             for name in ("k", "c", "friction", "shear_state", "shear_force", "push", "dashpot_force", "depth", "rate"):
                 joints[name][left_joints] = 0.0
             joints["margin"][left_joints] = np.inf  # no step takes such a line again
-        self._keep(kept, found, number, new.slack, share)
+        self._keep(kept, places, number, new.slack, share)
         lines = joined(joints, chosen(others, kept), new.rows)
-        grown = {type(each): each.with_search_lines(count, kept, added) for each, added in own}
+        grown = {type(bonded_law): bonded_law.with_search_lines(count, kept, added) for bonded_law, added in law_rows}
         laws = tuple(grown.get(type(law), law) for law in system.laws)
         system = system._replace(lines=lines, laws=laws).with_room_for_friction()
         after = account(system, np.arange(len(lines) - size, len(lines)), new.depth)
         self._book(books, before, after, 0.5 * h if state.since > 0 else 0.0)
         return system
 
-    def _keep(self, kept: Flags, found: ContactPlaces, number: Integers, slack: Array, share: Array) -> None:
+    def _keep(self, kept: Flags, places: ContactPlaces, number: Integers, slack: Array, share: Array) -> None:
         """Keep which lines there are now, and what they have been softened to.
 
         Args:
             kept: found lines that stay, shape (lines,).
-            found, number: places of the new lines, and numbers of their pairs.
+            places, number: places of the new lines, and numbers of their pairs.
             slack, share: overlap of the new lines without force [m], and their stiffness over that of their law [-].
         """
-        state, pressing = self.state, (found.gap < 0) & (share < 1)
-        new = {"pair": number, "slack": slack, "share": share, "found": self._searches_of(number)}
-        for name, column in new.items():
+        state, pressing = self.state, (places.gap < 0) & (share < 1)
+        columns = {"pair": number, "slack": slack, "share": share, "found": self._searches_of(number)}
+        for name, column in columns.items():
             setattr(state, name, np.concatenate([getattr(state, name)[kept], column]))
-        for block in (found.face, found.other) if pressing.any() else ():
+        for block in (places.face, places.other) if pressing.any() else ():
             np.minimum.at(state.least_share, block[pressing], share[pressing])
 
     def _book(self, books: Books, before: Account, after: Account, half: float) -> None:
@@ -300,26 +300,26 @@ class ContactSearch:
 
     def _joints_of(self, pair: Integers) -> Integers:
         """Number of the first joint of each pair of blocks, -1 for a pair that has none."""
-        there = np.minimum(np.searchsorted(self.law.jointed, pair), len(self.law.jointed) - 1)
-        return np.where(self.law.jointed[there] == pair, self.first_joint[there], -1)
+        index = np.minimum(np.searchsorted(self.law.jointed, pair), len(self.law.jointed) - 1)
+        return np.where(self.law.jointed[index] == pair, self.first_joint[index], -1)
 
     def _searches_of(self, pair: Integers) -> Integers:
         """How often both blocks of pairs have been searched."""
         searches = self.state.validity.searches
         return np.asarray(searches[pair // self.count] + searches[pair % self.count])
 
-    def _stable(self, found: ContactPlaces, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
+    def _shares(self, places: ContactPlaces, law: dict[str, Array], poses: Poses, system: System, h: float) -> Array:
         """Share of their law that leaves places stable in a step of h [s], shape (n,)."""
-        blocks = np.array([found.face, found.other])
-        arms = found.place - poses.drawn[blocks] - poses.moved[blocks]
-        sides = Sides(self.blocks.body[blocks], arms, found.normal)
+        blocks = np.array([places.face, places.other])
+        arms = places.place - poses.drawn[blocks] - poses.moved[blocks]
+        sides = Sides(self.blocks.body[blocks], arms, places.normal)
         return shares_within(sides, law, system.bodies, h / OF_STABLE_STEP)
 
 
-def _rolled(geometry: RestGeometry) -> Array:
+def _rolling_limits(geometry: RestGeometry) -> Array:
     """1 less the cosine of the angle of its faces up to which each joint serves [-], shape (joints,)."""
     normals = [np.array([side.normal for side in solid.sides]) for solid in geometry.solids]
-    shapes, known = [own.tobytes() for own in normals], dict[tuple[bytes, int], float]()
+    shapes, known = [face_normals.tobytes() for face_normals in normals], dict[tuple[bytes, int], float]()
     rolled = np.empty(len(geometry.joints))
     for i, joint in enumerate(geometry.joints):
         ends = list(zip((joint.below, joint.above), joint.sides, strict=True))
@@ -332,26 +332,26 @@ def _rolled(geometry: RestGeometry) -> Array:
     return rolled
 
 
-def _jointed(scene: Scene, finder: Finder, of: Integers) -> tuple[tuple[Integers, Integers], Integers]:
+def _jointed_pairs(scene: Scene, finder: Finder, joint_pair: Integers) -> tuple[tuple[Integers, Integers], Integers]:
     """Pairs of solids whose faces make a joint: the number of the pair of blocks among those with joints, and that of
     the pair of solids, and the contact lines of the joint, shape (n,) each.
 
     Args:
         scene, finder: the blocks and their joints.
-        of: number of the pair of blocks of each joint, shape (joints,).
+        joint_pair: number of the pair of blocks of each joint, shape (joints,).
     """
     assert scene.springs is not None
     geometry, of_joints = scene.rest_geometry, scene.springs.points.tolist()
     pairs, numbers, points = list[int](), list[int](), list[int]()
-    for joint, pair, count in zip(geometry.joints, of.tolist(), of_joints, strict=True):
+    for joint, pair, count in zip(geometry.joints, joint_pair.tolist(), of_joints, strict=True):
         ends = (joint.below, joint.above)
-        one, other = (
+        parts_below, parts_above = (
             [int(finder.first[block]) + part for part in geometry.solids[block].sides[side].parts]
             for block, side in zip(ends, joint.sides, strict=True)
         )
-        both = [int(pair_number(i, j, len(finder.owner))) for i in one for j in other]  # type: ignore[arg-type]
-        pairs += [pair] * len(both)
-        numbers += both
-        points += [count] * len(both)
+        part_pairs = [int(pair_number(i, j, len(finder.owner))) for i in parts_below for j in parts_above]  # type: ignore[arg-type]
+        pairs += [pair] * len(part_pairs)
+        numbers += part_pairs
+        points += [count] * len(part_pairs)
     order = np.argsort(numbers, kind="stable")
     return (np.array(pairs)[order], np.array(numbers)[order]), np.array(points)[order]

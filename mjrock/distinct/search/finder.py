@@ -72,9 +72,9 @@ class ContactPlaces(NamedTuple):
     share: Array
     area: Array
 
-    def only(self, which: Flags | Integers) -> ContactPlaces:
+    def only(self, numbers: Flags | Integers) -> ContactPlaces:
         """Some of the places."""
-        return ContactPlaces._make(part[which] for part in self)
+        return ContactPlaces._make(part[numbers] for part in self)
 
 
 class Near(NamedTuple):
@@ -131,8 +131,8 @@ class Finder:
         self._rank = ranked(fixed, self.volumes, centroids[:, -1], self._half)[self.owner]
         inside = [flags for solid in solids for flags in solid.inside]
         self.solids = Solids.about(parts, centroids[self.owner], inside, self.owner, sides_of(solids), flat=flat)
-        most = int(np.diff([*self.solids.first, *self.solids.begin]).max())
-        self._work = Workspace(rows(PLACE, 256), np.empty((4 * most + 4, 3)))
+        most_corners = int(np.diff([*self.solids.first, *self.solids.begin]).max())
+        self._work = Workspace(rows(PLACE, 256), np.empty((4 * most_corners + 4, 3)))
 
     def with_own_workspace(self) -> Finder:
         """A copy with work arrays of its own: runs in two threads must not share them."""
@@ -158,19 +158,19 @@ class Finder:
         near = Near(low, high, order, axis, reach, searched, self._fixed, self._rank, skipped, self.jointed, cells)
         while (count := find(solids, near, self._work)) > len(self._work.places):
             self._work = self._work._replace(places=rows(PLACE, 2 * count))
-        table = self._once(self._work.places[:count]) if self._of_parts else self._work.places[:count]
+        table = self._without_repetitions(self._work.places[:count]) if self._of_parts else self._work.places[:count]
         order = self._order_of(table)
-        found = ContactPlaces(*(table[name][order] for name in (PLACE.names or ())[:-1]))
-        found = self._of_the_plane(found) if self.flat else found
-        return self._among_blocks(found) if self._of_parts else found
+        places = ContactPlaces(*(table[name][order] for name in (PLACE.names or ())[:-1]))
+        places = self._places_in_plane(places) if self.flat else places
+        return self._among_blocks(places) if self._of_parts else places
 
-    def _once(self, table: Rows) -> Rows:
+    def _without_repetitions(self, table: Rows) -> Rows:
         """The places without repetitions: several pairs of parts of two blocks find those of a common side."""
         sides, pair = table["sides"], pair_number(table["face"], table["other"], len(self.owner))
-        _, of = np.unique(sides, return_inverse=True)
+        _, side_of_place = np.unique(sides, return_inverse=True)
         first = np.full(len(table) + 1, np.iinfo(np.int64).max)
-        np.minimum.at(first, of, pair)
-        once: Rows = table[(sides < 0) | (pair == first[of])]
+        np.minimum.at(first, side_of_place, pair)
+        once: Rows = table[(sides < 0) | (pair == first[side_of_place])]
         return once
 
     def _order_of(self, table: Rows) -> Integers:
@@ -199,25 +199,25 @@ class Finder:
         place[:, axes], change[:, axes, axes] = poses.drawn + poses.moved, poses.change
         return self.solids.moved(place[self.owner], change[self.owner])
 
-    def _among_blocks(self, found: ContactPlaces) -> ContactPlaces:
+    def _among_blocks(self, places: ContactPlaces) -> ContactPlaces:
         """Places of solids as those of blocks, sorted by pair. The law of a pair of blocks is shared among its pairs of
         solids in proportion to their common areas."""
-        solids, count = pair_number(found.face, found.other, len(self.owner)), len(self.number)
-        found = found._replace(face=self.owner[found.face], other=self.owner[found.other])
-        blocks = pair_number(found.face, found.other, count)
+        solids, count = pair_number(places.face, places.other, len(self.owner)), len(self.number)
+        places = places._replace(face=self.owner[places.face], other=self.owner[places.other])
+        blocks = pair_number(places.face, places.other, count)
         at = np.unique(solids, return_index=True)[1]  # the places of solids have one area
         _, of_pair = np.unique(blocks, return_inverse=True)
-        in_pair = np.bincount(of_pair[at], weights=found.area[at])[of_pair]
-        over = found.area > 0
-        share = found.share * np.where(over, found.area / np.where(over, in_pair, 1.0), 1.0)
+        in_pair = np.bincount(of_pair[at], weights=places.area[at])[of_pair]
+        over = places.area > 0
+        share = places.share * np.where(over, places.area / np.where(over, in_pair, 1.0), 1.0)
         area = np.where(over, in_pair, 0.0)
-        return found._replace(share=share, area=area)
+        return places._replace(share=share, area=area)
 
-    def _of_the_plane(self, found: ContactPlaces) -> ContactPlaces:
+    def _places_in_plane(self, places: ContactPlaces) -> ContactPlaces:
         """The places at one end of the prisms as those of the plane."""
-        normal, share, area = found.normal[:, ::2], 2 * found.share, found.area / (2 * self._half)
+        normal, share, area = places.normal[:, ::2], 2 * places.share, places.area / (2 * self._half)
         normal = normal / np.hypot(normal[:, 0], normal[:, 1])[:, None]
-        return found._replace(place=found.place[:, ::2], normal=normal, share=share, area=area)
+        return places._replace(place=places.place[:, ::2], normal=normal, share=share, area=area)
 
 
 def ranked(fixed: Flags, volumes: Array, heights: Array, size: float) -> Integers:
@@ -314,12 +314,12 @@ def find_pair(
         return count
     if count + len(work.corners) > len(work.places):
         return count + len(work.corners)
-    least = best - CANDIDATE_FACES * min(solids.extent[face], solids.extent[other_face])
+    least_distance = best - CANDIDATE_FACES * min(solids.extent[face], solids.extent[other_face])
     longer = solids.extent[other_face] - solids.extent[face]
     if other_distance + LARGER_FACE * longer - SECOND_FACE * solids.extent[face] > distance:
         face, blocks = other_face, (b, a)
     if best < 0:
-        face, blocks, gap = shallowest(solids, face, blocks, least, work, count)
+        face, blocks, gap = shallowest(solids, face, blocks, least_distance, work, count)
         over = face_towards(solids, blocks[1], scaled(-1.0, normal_of(solids, face)))
         if gap == -math.inf or dot(normal_of(solids, face), normal_of(solids, over)) > FACES_MEET:
             direction, edge_distance = edge_separation(solids, a, b)
@@ -327,11 +327,11 @@ def find_pair(
                 if edge_distance >= reach:
                     return count
                 return write_edges(solids, (a, b), direction, edge_distance, work.places, count)
-    whole = with_whole_sides(solids)
+    whole_solids = with_whole_sides(solids)
     if cells[0] > 1:
-        last = clip_in_grid(whole, face, blocks, cells, work, count)
+        last = clip_in_grid(whole_solids, face, blocks, cells, work, count)
     else:
-        last = clip(whole, face, blocks, work, count)
+        last = clip(whole_solids, face, blocks, work, count)
     return last if last > count else write_near_corner(solids, face, blocks, best, work.places, count)
 
 
@@ -353,7 +353,7 @@ def write_near_corner(solids: Solids, face: int, blocks: tuple[int, int], gap: f
 
 @inlined
 def shallowest(
-    solids: Solids, face: int, blocks: tuple[int, int], least: float, work: Workspace, count: int
+    solids: Solids, face: int, blocks: tuple[int, int], least_distance: float, work: Workspace, count: int
 ) -> tuple[int, tuple[int, int], float]:
     """The face of two overlapping blocks with the smallest overlap at its places, its block and the other one, and the
     least gap of these places [m].
@@ -364,27 +364,27 @@ def shallowest(
     Args:
         solids: the blocks where they are.
         face, blocks: the face from which the other block is farthest, its block and the other one.
-        least: distance of the other block from a face from which on that face is a candidate [m].
+        least_distance: distance of the other block from a face from which on that face is a candidate [m].
         work, count: for places that are not kept, see `clipping.clip`.
     """
     table = work.places
     first = deepest(table, count, clip(solids, face, blocks, work, count))
-    there, most, middle = first >= 0, -math.inf, corner_of(solids, solids.first[face])
-    if there:
-        most, middle = table[first].gap, read(table[first].at)
-    slack = ON_ENDS * max(-most, 0.0)
-    common = there and lies_in(solids, blocks[0], middle, slack) and lies_in(solids, blocks[1], middle, slack)
-    best, of_best, least_gap = face, blocks, SHALLOWER * most
+    has_place, best_gap, middle = first >= 0, -math.inf, corner_of(solids, solids.first[face])
+    if has_place:
+        best_gap, middle = table[first].gap, read(table[first].at)
+    slack = ON_ENDS * max(-best_gap, 0.0)
+    common = has_place and lies_in(solids, blocks[0], middle, slack) and lies_in(solids, blocks[1], middle, slack)
+    best, of_best, least_gap = face, blocks, SHALLOWER * best_gap
     for turn in range(2):
         block, other = blocks if turn == 0 else (blocks[1], blocks[0])
-        for one in range(solids.face[block], solids.face[block + 1]):
-            if one != face and not solids.inside[one] and distance_outside(solids, one, other) > least:
-                row = deepest(table, count, clip(solids, one, (block, other), work, count))
+        for trial in range(solids.face[block], solids.face[block + 1]):
+            if trial != face and not solids.inside[trial] and distance_outside(solids, trial, other) > least_distance:
+                row = deepest(table, count, clip(solids, trial, (block, other), work, count))
                 gap = table[row].gap if row >= 0 else -math.inf
-                open_or_beside = (there and gap >= 0) or (common and gap > height(solids, one, middle))
+                open_or_beside = (has_place and gap >= 0) or (common and gap > height(solids, trial, middle))
                 if gap > least_gap and not open_or_beside:
-                    best, of_best, least_gap, most = one, (block, other), gap, gap
-    return best, of_best, most
+                    best, of_best, least_gap, best_gap = trial, (block, other), gap, gap
+    return best, of_best, best_gap
 
 
 @inlined
@@ -423,10 +423,10 @@ def distance_outside(solids: Solids, face: int, other: int) -> float:
 @inlined
 def farthest_along(solids: Solids, block: int, direction: Vector) -> float:
     """Largest coordinate of a block along a direction [m]."""
-    most = -math.inf
+    farthest = -math.inf
     for i in range(solids.corner[block], solids.corner[block + 1]):
-        most = max(most, dot(direction, triple(solids.corners, i)))
-    return most
+        farthest = max(farthest, dot(direction, triple(solids.corners, i)))
+    return farthest
 
 
 @inlined
@@ -435,23 +435,23 @@ def separating_face(solids: Solids, block: int, other: int, reach: float) -> tup
 
     The search ends at the first face with a distance above the reach. A face between two parts of a block has no
     contact: a block outside of its plane counts as infinitely far."""
-    best, most = -1, -math.inf
+    best, farthest = -1, -math.inf
     for face in range(solids.face[block], solids.face[block + 1]):
         distance = distance_outside(solids, face, other)
         if solids.inside[face]:
             distance = math.inf if distance >= 0 else -math.inf
-        if distance > most:
-            best, most = face, distance
-            if most > reach:
+        if distance > farthest:
+            best, farthest = face, distance
+            if farthest > reach:
                 break
-    return best, most
+    return best, farthest
 
 
 @inlined
 def edge_separation(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
     """The separating axis of two edges along which two blocks are farthest from each other, and that distance [m]."""
     best: Vector = (0.0, 0.0, 0.0)
-    most = -math.inf
+    farthest = -math.inf
     for i in range(solids.edge[a], solids.edge[a + 1]):
         for j in range(solids.edge[b], solids.edge[b + 1]):
             normal = spun(triple(solids.edges, i), triple(solids.edges, j))
@@ -461,21 +461,21 @@ def edge_separation(solids: Solids, a: int, b: int) -> tuple[Vector, float]:
             for sign in (1.0, -1.0):
                 direction = scaled(sign / size, normal)
                 distance = -farthest_along(solids, b, scaled(-1.0, direction)) - farthest_along(solids, a, direction)
-                if distance > most:
-                    best, most = direction, distance
-    return best, most
+                if distance > farthest:
+                    best, farthest = direction, distance
+    return best, farthest
 
 
 @inlined
 def edge_towards(solids: Solids, block: int, direction: Vector) -> tuple[Vector, Vector]:
     """The edge of a block that is farthest along a direction: one end, and the vector to the other one [m]."""
-    most, end, along = -math.inf, direction, direction
+    farthest, end, along = -math.inf, direction, direction
     for face in range(solids.face[block], solids.face[block + 1]):
         for i in range(solids.first[face], solids.first[face + 1]):
-            here, after = corner_of(solids, i), next_corner(solids, face, i)
-            reaches = dot(direction, plus(here, after))
-            if reaches > most:
-                most, end, along = reaches, here, minus(after, here)
+            corner, after = corner_of(solids, i), next_corner(solids, face, i)
+            reaches = dot(direction, plus(corner, after))
+            if reaches > farthest:
+                farthest, end, along = reaches, corner, minus(after, corner)
     return end, along
 
 
@@ -484,8 +484,8 @@ def write_edges(solids: Solids, blocks: tuple[int, int], normal: Vector, gap: fl
     """Write the place where two edges cross. Returns the number of places in the table."""
     if count < len(table):
         start, edge = edge_towards(solids, blocks[0], normal)
-        other, other_edge = edge_towards(solids, blocks[1], scaled(-1.0, normal))
-        share = dot(spun(minus(start, other), edge), normal) / dot(spun(other_edge, edge), normal)
-        write_place(table[count], blocks, plus(other, scaled(share, other_edge)), normal, gap)
+        other_start, other_edge = edge_towards(solids, blocks[1], scaled(-1.0, normal))
+        share = dot(spun(minus(start, other_start), edge), normal) / dot(spun(other_edge, edge), normal)
+        write_place(table[count], blocks, plus(other_start, scaled(share, other_edge)), normal, gap)
         table[count].share, table[count].area = SHARE_OF_EDGES, 0.0
     return count + 1

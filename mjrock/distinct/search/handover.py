@@ -88,12 +88,12 @@ class Pairs(NamedTuple):
     high: Integers
 
     @classmethod
-    def belonging(cls, places: Integers, gone: Integers) -> Pairs:
+    def belonging(cls, places: Integers, old: Integers) -> Pairs:
         """From the number of the pair of each place, those of a pair together, and of each old line, increasing."""
         begins = (places[1:] != places[:-1]).nonzero()[0] + 1
         first = np.array([0, *begins.tolist(), len(places)])
         pairs = places[first[:-1]] if len(places) else places
-        return cls(first, gone.searchsorted(pairs), gone.searchsorted(pairs, "right"))
+        return cls(first, old.searchsorted(pairs), old.searchsorted(pairs, "right"))
 
 
 @inlined
@@ -131,14 +131,14 @@ class Place(NamedTuple):
 
 
 @inlined
-def place_of(line: Row, both: int, blocks: Blocks) -> Place:
+def place_of(line: Row, block_sum: int, blocks: Blocks) -> Place:
     """Position and face of a line, from the sum of the numbers of its two blocks."""
     poses, block = blocks.poses, blocks.free[line.body]
-    face, normal, own = both - block, read(line.normal), read(line.at)
-    arm = turned(poses, block, own)
-    at = plus(centroid(poses, block, own), arm)
+    face, normal, point = block_sum - block, read(line.normal), read(line.at)
+    arm = turned(poses, block, point)
+    at = plus(centroid(poses, block, point), arm)
     if line.face == POINT_ON_FIXED_BLOCK:
-        shift = minus(plus(minus(arm, own), vector(poses.moved, block, own)), vector(poses.moved, face, own))
+        shift = minus(plus(minus(arm, point), vector(poses.moved, block, point)), vector(poses.moved, face, point))
         at, normal = minus(at, plus(read(line.between), shift)), turned(poses, block, normal)
     elif line.face >= 0:
         normal = turned(poses, face, normal)
@@ -161,40 +161,41 @@ def nearest(lines: Lines, ends: tuple[int, int], at: Vector) -> tuple[int, float
         lines, ends: lines with their points, and where those of the pair begin and end.
         at: the place [m].
     """
-    best, least = -1, math.inf
+    best, least_square = -1, math.inf
     for j in range(ends[0], ends[1]):
         square = square_between(lines, j, at)
-        if square < least:
-            best, least = j, square
-    return best, math.sqrt(least)
+        if square < least_square:
+            best, least_square = j, square
+    return best, math.sqrt(least_square)
 
 
 @inlined
 def pressed_overlap(
-    line: Row, i: int, found: ContactPlaces, gone: Lines, ends: tuple[int, int], blocks: Blocks
+    line: Row, i: int, places: ContactPlaces, old: Lines, ends: tuple[int, int], blocks: Blocks
 ) -> float:
     """The part of the overlap of new place i that has a force, zero if no old line of its pair was there [m].
 
     It is the overlap less the slack of the nearest old line with a similar normal: at a corner two joints of a pair may
     have lines. See `hand_over`.
     """
-    overlap: float = max(-found.gap[i], 0.0)
+    overlap: float = max(-places.gap[i], 0.0)
     like = read(line.normal)
-    face, other, at, normal = found.face[i], found.other[i], vector(found.place, i, like), vector(found.normal, i, like)
-    bound, best, least = (SAME_PLACE * min(blocks.sizes[face], blocks.sizes[other])) ** 2, -1, math.inf
+    face, other = places.face[i], places.other[i]
+    at, normal = vector(places.place, i, like), vector(places.normal, i, like)
+    bound, best, least_square = (SAME_PLACE * min(blocks.sizes[face], blocks.sizes[other])) ** 2, -1, math.inf
     for j in range(ends[0], ends[1] if overlap > 0 else ends[0]):
-        square = square_between(gone, j, at)
-        if square < least:
-            there, sense = place_of(gone.rows[j], face + other, blocks), 1.0 if other > face else -1.0
-            deep = dot(normal, minus(there.at, at))
-            if square - deep * deep < bound and sense * there.sense * dot(normal, there.normal) > SAME_NORMAL:
-                best, least = j, square
-    pressed: float = max(overlap - gone.slack[best], 0.0) if best >= 0 else 0.0
+        square = square_between(old, j, at)
+        if square < least_square:
+            old_place, sense = place_of(old.rows[j], face + other, blocks), 1.0 if other > face else -1.0
+            deep = dot(normal, minus(old_place.at, at))
+            if square - deep * deep < bound and sense * old_place.sense * dot(normal, old_place.normal) > SAME_NORMAL:
+                best, least_square = j, square
+    pressed: float = max(overlap - old.slack[best], 0.0) if best >= 0 else 0.0
     return pressed
 
 
 @inlined
-def press(new: Lines, places: tuple[int, int], found: ContactPlaces, gone: Lines, ends: tuple[int, int]) -> None:
+def press(new: Lines, numbers: tuple[int, int], places: ContactPlaces, old: Lines, ends: tuple[int, int]) -> None:
     """Give the places of a pair together the normal force of the lines that they replace, and no more energy.
 
     A pair that has lost force in a search regains it in later ones: otherwise blocks would sink into each other from
@@ -202,30 +203,30 @@ def press(new: Lines, places: tuple[int, int], found: ContactPlaces, gone: Lines
     """
     force = energy = force_before = energy_before = 0.0
     for j in range(ends[0], ends[1]):
-        force_before += normal_force(gone.rows[j], -gone.depth[j], 0.0)
-        energy_before += stored(gone.rows[j], -gone.depth[j])
-    for i in range(places[0], places[1]):
+        force_before += normal_force(old.rows[j], -old.depth[j], 0.0)
+        energy_before += stored(old.rows[j], -old.depth[j])
+    for i in range(numbers[0], numbers[1]):
         force += normal_force(new.rows[i], -new.depth[i], 0.0)
         energy += stored(new.rows[i], -new.depth[i])
     of_force, of_energy = (min(REGAINED, force_before / force), energy_before / energy) if force > 0 else (0.0, 0.0)
-    for i in range(places[0], places[1]):
+    for i in range(numbers[0], numbers[1]):
         row, depth = new.rows[i], new.depth[i]
         pressed = min(depth_of_force(row, of_force, depth), depth_of_energy(row, of_energy, depth))
-        new.depth[i] = min(pressed, max(-found.gap[i], 0.0))
+        new.depth[i] = min(pressed, max(-places.gap[i], 0.0))
 
 
 @inlined
-def write_line(line: Row, i: int, slack: float, found: ContactPlaces, blocks: Blocks) -> None:
+def write_line(line: Row, i: int, slack: float, places: ContactPlaces, blocks: Blocks) -> None:
     """Write the point and the face of place i, in the axes of their blocks.
 
     A fixed block carries a point only where its corner meets the face of a body.
     """
     like = read(line.normal)
-    poses, face, block, normal = blocks.poses, found.face[i], found.other[i], vector(found.normal, i, like)
+    poses, face, block, normal = blocks.poses, places.face[i], places.other[i], vector(places.normal, i, like)
     point = blocks.body[block] < 0
     if point:
         face, block, normal = block, face, scaled(-1.0, normal)
-    fixed, half, place = blocks.body[face] < 0, scaled(0.5 * found.gap[i], normal), vector(found.place, i, like)
+    fixed, half, place = blocks.body[face] < 0, scaled(0.5 * places.gap[i], normal), vector(places.place, i, like)
     at = turned_back(poses, block, minus(plus(place, half), centroid(poses, block, like)))
     origin = minus(minus(place, half), scaled(slack, normal))
     between = plus(vector(poses.drawn, block, like), at)
@@ -256,54 +257,54 @@ def along_new(along: Vector, old: Place, new: Place) -> Vector:
 
 
 @inlined
-def give(gone: Row, line: Row, share: float, both: int, blocks: Blocks) -> None:
+def give(old: Row, line: Row, share: float, block_sum: int, blocks: Blocks) -> None:
     """Give a line a share of the friction of one that it replaces, and of its normal force of the last step.
 
     The force of a shear spring is kept, as that of rigid friction is. The rate is that of the deepest line that it
     replaces.
     """
-    poses, old, new = blocks.poses, place_of(gone, both, blocks), place_of(line, both, blocks)
-    line.push, line.dashpot_force = line.push + share * gone.push, line.dashpot_force + share * gone.dashpot_force
-    if gone.depth > line.depth or line.depth == 0:
-        line.depth, line.rate = gone.depth, gone.rate
-    shear = scaled(share, read(gone.shear_state))
-    if gone.face >= 0:
-        shear = turned(poses, old.face, shear)
-    shear = along_new(shear, old, new)
+    poses, old_place, new_place = blocks.poses, place_of(old, block_sum, blocks), place_of(line, block_sum, blocks)
+    line.push, line.dashpot_force = line.push + share * old.push, line.dashpot_force + share * old.dashpot_force
+    if old.depth > line.depth or line.depth == 0:
+        line.depth, line.rate = old.depth, old.rate
+    shear = scaled(share, read(old.shear_state))
+    if old.face >= 0:
+        shear = turned(poses, old_place.face, shear)
+    shear = along_new(shear, old_place, new_place)
     if line.face >= 0:
-        shear = turned_back(poses, new.face, shear)
-    increase(line.shear_state, scaled(gone.k_s / line.k_s if line.k_s < math.inf else 1.0, shear))
-    increase(line.shear_force, along_new(scaled(share, read(gone.shear_force)), old, new))
+        shear = turned_back(poses, new_place.face, shear)
+    increase(line.shear_state, scaled(old.k_s / line.k_s if line.k_s < math.inf else 1.0, shear))
+    increase(line.shear_force, along_new(scaled(share, read(old.shear_force)), old_place, new_place))
 
 
 @inlined
-def give_to_nearest(gone: Row, new: Lines, places: tuple[int, int], both: int, blocks: Blocks) -> None:
+def give_to_nearest(old_line: Row, new: Lines, places: tuple[int, int], block_sum: int, blocks: Blocks) -> None:
     """Give the forces of a line that is replaced to the nearest place of its pair, or to all that are as near."""
-    at, count = place_of(gone, both, blocks).at, 0
+    at, count = place_of(old_line, block_sum, blocks).at, 0
     _, off = nearest(new, places, at)
     near = AS_NEAR * off * off
     for i in range(places[0], places[1]):
         count += square_between(new, i, at) <= near
     for i in range(places[0], places[1]):
         if square_between(new, i, at) <= near:
-            give(gone, new.rows[i], 1 / count, both, blocks)
+            give(old_line, new.rows[i], 1 / count, block_sum, blocks)
 
 
 @compiled_at_once
-def keep_depths(new: Lines, found: ContactPlaces, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
+def keep_depths(new: Lines, places: ContactPlaces, old: Lines, pairs: Pairs, blocks: Blocks) -> None:
     """Write the part of the overlap of each place that has a force, and the positions of the old lines, see
     `hand_over`."""
     for p in range(len(pairs.low)):
         begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
-        both = found.face[begin] + found.other[begin]
+        block_sum = places.face[begin] + places.other[begin]
         for j in range(ends[0], ends[1]):
-            put(gone.at[j], place_of(gone.rows[j], both, blocks).at)
+            put(old.at[j], place_of(old.rows[j], block_sum, blocks).at)
         for i in range(begin, end):
-            new.depth[i] = pressed_overlap(new.rows[i], i, found, gone, ends, blocks)
+            new.depth[i] = pressed_overlap(new.rows[i], i, places, old, ends, blocks)
 
 
 @compiled_at_once
-def hand_over(new: Lines, found: ContactPlaces, gone: Lines, pairs: Pairs, blocks: Blocks) -> None:
+def hand_over(new: Lines, places: ContactPlaces, old: Lines, pairs: Pairs, blocks: Blocks) -> None:
     """Write the lines of new places, and give them the forces of the lines of their pair that they replace.
 
     Of a place that no old line was near, the whole overlap has no force for as long as it lasts. So a contact that an
@@ -313,27 +314,27 @@ def hand_over(new: Lines, found: ContactPlaces, gone: Lines, pairs: Pairs, block
 
     Args:
         new: rows with the law and the depth of each place, see `keep_depths`, and room for their slack.
-        found: the places, those of a pair together.
-        gone: the old lines, in the order of their pairs.
+        places: those of a pair together.
+        old: the old lines, in the order of their pairs.
         pairs: which of both belong together.
         blocks: all blocks.
     """
     for p in range(len(pairs.low)):
         begin, end, ends = pairs.first[p], pairs.first[p + 1], (pairs.low[p], pairs.high[p])
-        both = found.face[begin] + found.other[begin]
-        press(new, (begin, end), found, gone, ends)
+        block_sum = places.face[begin] + places.other[begin]
+        press(new, (begin, end), places, old, ends)
         for i in range(begin, end):
-            unpressed = FIRST_OPENING * min(blocks.sizes[found.face[i]], blocks.sizes[found.other[i]])
+            unpressed = FIRST_OPENING * min(blocks.sizes[places.face[i]], blocks.sizes[places.other[i]])
             pressed = new.depth[i] if new.depth[i] > 0 else -unpressed
-            new.slack[i] = max(-found.gap[i] - pressed, 0.0)
-            write_line(new.rows[i], i, new.slack[i], found, blocks)
-            put(new.at[i], place_of(new.rows[i], both, blocks).at)
+            new.slack[i] = max(-places.gap[i] - pressed, 0.0)
+            write_line(new.rows[i], i, new.slack[i], places, blocks)
+            put(new.at[i], place_of(new.rows[i], block_sum, blocks).at)
         for j in range(ends[0], ends[1]):
-            old = gone.rows[j]
-            if old.push != 0 or max(old.depth, gone.depth[j]) > 0:  # at a start no step has written its depth
-                give_to_nearest(old, new, (begin, end), both, blocks)
+            old_line = old.rows[j]
+            if old_line.push != 0 or max(old_line.depth, old.depth[j]) > 0:  # at a start no step has written its depth
+                give_to_nearest(old_line, new, (begin, end), block_sum, blocks)
         for i in range(begin, end):
             line = new.rows[i]
             if line.k_s < math.inf:
-                most = shear_limit(line, normal_force(line, -new.depth[i], 0.0)) / line.k_s
-                put(line.shear_state, shortened(read(line.shear_state), most))
+                limit = shear_limit(line, normal_force(line, -new.depth[i], 0.0)) / line.k_s
+                put(line.shear_state, shortened(read(line.shear_state), limit))

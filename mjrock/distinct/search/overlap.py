@@ -50,29 +50,29 @@ def checked_overlap(setup: Setup, case: AnyCase, pose: Array, t: Array, h: float
     chosen = np.unique(np.linspace(0, len(t) - 1, min(OVERLAP_SAMPLES, len(t))).round().astype(int))
     poses = {i: _poses_at(search, setup.system, pose[i], float(t[i]), case) for i in chosen.tolist()}
     every, deepest = np.ones(search.count, dtype=bool), set[tuple[float, int, int, int]]()
-    for i, there in poses.items():
-        found = search.finder.places_near(there, np.zeros(search.count), every, np.zeros(0, dtype=np.int64))
-        pairs, of = np.unique(pair_number(found.face, found.other, search.count), return_inverse=True)
+    for i, block_poses in poses.items():
+        places = search.finder.places_near(block_poses, np.zeros(search.count), every, np.zeros(0, dtype=np.int64))
+        pairs, pair_of_place = np.unique(pair_number(places.face, places.other, search.count), return_inverse=True)
         blocks = np.array(np.divmod(pairs, search.count))
-        deep = np.bincount(of, weights=found.share * np.maximum(-found.gap, 0.0))
+        deep = np.bincount(pair_of_place, weights=places.share * np.maximum(-places.gap, 0.0))
         depth = deep / search.sizes[blocks].min(axis=0)
-        here = {
+        new = {
             (float(depth[j]), i, *map(int, blocks[:, j])) for j in np.argsort(-depth)[:DEEPEST_PAIRS] if depth[j] > 0
         }
-        deepest = set(heapq.nlargest(DEEPEST_PAIRS, deepest | here)) | {each for each in deepest | here if each[1] == 0}
+        deepest = set(heapq.nlargest(DEEPEST_PAIRS, deepest | new)) | {pair for pair in deepest | new if pair[1] == 0}
     worst, at_start, message, finder = 0.0, 0.0, "", search.finder
-    posed = {i: finder.posed(poses[i]) for i in {each[1] for each in deepest}}
+    posed = {i: finder.posed(poses[i]) for i in {pair[1] for pair in deepest}}
     for _, i, a, b in deepest:
         ours, theirs = finder.parts_of(a), finder.parts_of(b)
-        common = sum(common_volume(posed[i], one, other) for one in ours for other in theirs)
+        common = sum(common_volume(posed[i], part, other_part) for part in ours for other_part in theirs)
         share = common / float(finder.volumes[[a, b]].min())
         at_start = max(at_start, share if i == 0 else 0.0)
         if share > worst:
             names = case.blocks
             worst, message = share, f"{names[a]} and {names[b]} lie inside each other by {share:.1%} of the smaller one"
-            left = float(search.state.least_share[[a, b]].max())
-            shorter = OF_STABLE_STEP * unsoftened(left, h / OF_STABLE_STEP, search.law.slowest)
-            message += f" at {t[i]:.4g} s: {overlap_remedy(share, left, shorter)}"
+            share_left = float(search.state.least_share[[a, b]].max())
+            shorter = OF_STABLE_STEP * unsoftened(share_left, h / OF_STABLE_STEP, search.law.slowest)
+            message += f" at {t[i]:.4g} s: {overlap_remedy(share, share_left, shorter)}"
     message = message if worst > OVERLAP_WARNED_OF + at_start else softened(search, case, h)
     if message:
         warn_of(message)
@@ -118,7 +118,7 @@ def _poses_at(search: ContactSearch, system: System, pose: Array, t: float, case
 def common_volume(solids: Solids, a: int, b: int) -> float:
     """Volume that two convex solids have in common [m3]: that of pyramids on what is left of their faces, from a point
     within both."""
-    kept, blocks = [], [solids.corners[solids.corner[block] : solids.corner[block + 1]] for block in (a, b)]
+    faces, blocks = [], [solids.corners[solids.corner[block] : solids.corner[block + 1]] for block in (a, b)]
     one_plane = FLUSH * float(max(np.abs(corners).max() for corners in blocks))
     for block, other in ((a, b), (b, a)):
         of_other = range(solids.face[other], solids.face[other + 1])
@@ -129,18 +129,18 @@ def common_volume(solids: Solids, a: int, b: int) -> float:
                 if not len(polygon):
                     break
                 beyond = (polygon - corner) @ outwards
-                least, most = beyond.min(), beyond.max()
-                flush = -one_plane < least and most < one_plane and normal @ outwards > 0
-                if not flush and most > 0:
+                lowest, highest = beyond.min(), beyond.max()
+                flush = -one_plane < lowest and highest < one_plane and normal @ outwards > 0
+                if not flush and highest > 0:
                     polygon = kept_of(polygon, -beyond)
                 if len(polygon) < 3 or (flush and block == b):  # a face that two blocks share counts once
                     polygon = polygon[:0]
             if len(polygon):
-                kept.append((normal, polygon))
-    if not kept:
+                faces.append((normal, polygon))
+    if not faces:
         return 0.0
-    middle = np.concatenate([polygon for _, polygon in kept]).mean(axis=0)
-    return sum(float(normal @ (polygon[0] - middle) * (normal @ area_vector(polygon))) for normal, polygon in kept) / 3
+    middle = np.concatenate([polygon for _, polygon in faces]).mean(axis=0)
+    return sum(float(normal @ (polygon[0] - middle) * (normal @ area_vector(polygon))) for normal, polygon in faces) / 3
 
 
 def face_corners(solids: Solids, face: int) -> Array:

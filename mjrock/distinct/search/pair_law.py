@@ -63,10 +63,10 @@ def least_among(pair: Integers, others: Integers, shares: Array) -> Array:
     """The least share of each pair among others, 1 where it is not one of them, shape of the pairs."""
     if not len(others):
         return np.ones(len(pair))
-    known, of = np.unique(others, return_inverse=True)
-    least = np.ones(len(known) + 1)
-    np.minimum.at(least, of, shares)
-    return least[np.where(are_among(pair, known), np.searchsorted(known, pair), -1)]
+    known, index = np.unique(others, return_inverse=True)
+    least_shares = np.ones(len(known) + 1)
+    np.minimum.at(least_shares, index, shares)
+    return least_shares[np.where(are_among(pair, known), np.searchsorted(known, pair), -1)]
 
 
 class PairLaw(NamedTuple):
@@ -97,22 +97,22 @@ class PairLaw(NamedTuple):
         in_space = len(scene.freedom.axes) == 3
         assert springs is not None
         blocks, joints = len(solids), len(scene.rest_geometry.joints)
-        below, above = np.array([(each.below, each.above) for each in scene.rest_geometry.joints]).T
-        areas = np.array([each.area if in_space else each.width for each in scene.rest_geometry.joints])
+        below, above = np.array([(joint.below, joint.above) for joint in scene.rest_geometry.joints]).T
+        areas = np.array([joint.area if in_space else joint.width for joint in scene.rest_geometry.joints])
         sums = np.column_stack([*(_sums(joint, lines[name], joints) for name in SHARED_COLUMNS), areas])
         others = np.zeros((joints, len(INTENSIVE)))
         others[joint] = np.column_stack([lines[name] for name in INTENSIVE])
         others[joint, OF_FRICTION] = np.minimum(others[joint, OF_FRICTION], springs.residual[joint])
-        jointed, of = np.unique(pair_number(below, above, blocks), return_inverse=True)
-        in_pairs = np.column_stack([_sums(of, column, len(jointed)) for column in sums.T])
-        least = np.full((len(jointed), len(INTENSIVE)), np.inf)
-        np.minimum.at(least, of, others)
-        shared, rough = _of_blocks(np.append(below, above), sums, others, blocks)
+        jointed, pair_of_joint = np.unique(pair_number(below, above, blocks), return_inverse=True)
+        in_pairs = np.column_stack([_sums(pair_of_joint, column, len(jointed)) for column in sums.T])
+        least_values = np.full((len(jointed), len(INTENSIVE)), np.inf)
+        np.minimum.at(least_values, pair_of_joint, others)
+        shared, rough = _law_of_blocks(np.append(below, above), sums, others, blocks)
         loose = shared[:, 0] == 0
-        shared[loose], rough[loose] = _of_loose(scene, sums, others, loose)
+        shared[loose], rough[loose] = _law_of_loose(scene, sums, others, loose)
         fixed = np.array([solid.fixed for solid in solids])
-        known = PairsMet(KnownPairs(jointed, in_pairs, least, np.ones(len(jointed), dtype=bool)))
-        return cls(jointed, (in_pairs, least), (shared, rough), fixed, loose, GivenPairs(springs, blocks), known)
+        known = PairsMet(KnownPairs(jointed, in_pairs, least_values, np.ones(len(jointed), dtype=bool)))
+        return cls(jointed, (in_pairs, least_values), (shared, rough), fixed, loose, GivenPairs(springs, blocks), known)
 
     @property
     def slowest(self) -> float:
@@ -125,18 +125,18 @@ class PairLaw(NamedTuple):
         block, zero of a fixed one [1/kg], shape (blocks,)."""
         blocks, fastest = len(self.fixed), dict[float, float]()
         slowest = np.zeros(blocks)
-        for one in range(blocks if self.given.springs.pairs is not None else 0):
-            others = np.arange(one + 1, blocks)
-            others = others[~are_among(pair_number(np.full_like(others, one), others, blocks), self.jointed)]
-            others = others[inverse_mass[one] + inverse_mass[others] > 0]
-            slow = self.given.retardations(one, others)
+        for block in range(blocks if self.given.springs.pairs is not None else 0):
+            others = np.arange(block + 1, blocks)
+            others = others[~are_among(pair_number(np.full_like(others, block), others, blocks), self.jointed)]
+            others = others[inverse_mass[block] + inverse_mass[others] > 0]
+            slow = self.given.retardations(block, others)
             others, slow = others[slow > 0], slow[slow > 0]
-            ends = np.array([np.full_like(others, one), others])
-            law = law_of(self._of_softer(ends)[0][:, 0], self.of_block[1][ends].min(axis=0))
-            frequency = np.sqrt(largest_stiffness(law) * (inverse_mass[one] + inverse_mass[others]))
-            for each in np.unique(slow).tolist():
-                fastest[each] = max(fastest.get(each, 0.0), float(frequency[slow == each].max()))
-            slowest[one] = max(slowest[one], slow.max(initial=0.0))
+            ends = np.array([np.full_like(others, block), others])
+            law = law_of(self._law_of_softer(ends)[0][:, 0], self.of_block[1][ends].min(axis=0))
+            frequency = np.sqrt(largest_stiffness(law) * (inverse_mass[block] + inverse_mass[others]))
+            for retardation in np.unique(slow).tolist():
+                fastest[retardation] = max(fastest.get(retardation, 0.0), float(frequency[slow == retardation].max()))
+            slowest[block] = max(slowest[block], slow.max(initial=0.0))
             slowest[others] = np.maximum(slowest[others], slow)
         frequency = np.array([*fastest.values()])
         return Meetings(Impacts(frequency, 0.5 * np.array([*fastest]) * frequency), slowest)
@@ -144,36 +144,36 @@ class PairLaw(NamedTuple):
     def of_places(self, pair: Integers, share: Array, area: Array, blocks: int) -> dict[str, Array]:
         """Columns of lines at places of pairs, from the share that each has of its pair, and the area of the part of a
         face that lies over the other [m2], zero for edges, shape (n,) each."""
-        known = self.known.with_pairs(pair, lambda new: self._alone(new, blocks))
-        there = known.numbers.searchsorted(pair)
-        shared, others = known.shared[there], known.others[there]
+        known = self.known.with_pairs(pair, lambda new: self._law_without_joint(new, blocks))
+        index = known.numbers.searchsorted(pair)
+        shared, others = known.shared[index], known.others[index]
         over = area / shared[:, -1]
-        part = np.where(known.of_face[there], part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
+        part = np.where(known.of_face[index], part_of_face(over), np.minimum(over / WHOLE_CONTACT, 1.0))
         share = share * np.where(area > 0, part, 1.0)
         columns = dict(zip(SHARED_COLUMNS, share * shared[:, :-1].T, strict=True))
         return columns | dict(zip(INTENSIVE, others.T, strict=True))
 
-    def _alone(self, pair: Integers, blocks: int) -> KnownPairs:
+    def _law_without_joint(self, pair: Integers, blocks: int) -> KnownPairs:
         """What pairs without a joint have, by their increasing numbers."""
         ends = np.array(np.divmod(pair, blocks))
-        (shared, loose), others = self._of_softer(ends), self.of_block[1][ends].min(axis=0)
+        (shared, loose), others = self._law_of_softer(ends), self.of_block[1][ends].min(axis=0)
         self.given.take(pair, shared, others[:, OF_FRICTION])
         return KnownPairs(pair, shared, others, loose)
 
-    def _of_softer(self, ends: Integers) -> tuple[Array, Flags]:
+    def _law_of_softer(self, ends: Integers) -> tuple[Array, Flags]:
         """What pairs without a joint have, shape (n, 5), and whether the block that rules is loose, shape (n,), from
         their blocks, shape (2, n)."""
-        both, fixed = self.of_block[0][ends], self.fixed[ends]
-        over = both[::-1, :, -1] / both[..., -1]
-        both = both * np.where(fixed, over, 1.0)[..., None]
-        less, more = both[0] < (1 - AS_STIFF) * both[1], (1 - AS_STIFF) * both[0] > both[1]
+        laws, fixed = self.of_block[0][ends], self.fixed[ends]
+        over = laws[::-1, :, -1] / laws[..., -1]
+        laws = laws * np.where(fixed, over, 1.0)[..., None]
+        less, more = laws[0] < (1 - AS_STIFF) * laws[1], (1 - AS_STIFF) * laws[0] > laws[1]
         unlike = (less | more).argmax(axis=1)  # of equal stiffness the one with less of the next column
         first = ~np.take_along_axis(more, unlike[:, None], axis=1)[:, 0]
         second = fixed[0] | (~fixed[1] & ~first)
         rules = np.where(second, self.loose[ends[1]], self.loose[ends[0]])
         alike = ~fixed.any(axis=0) & ~(less | more).any(axis=1)
         rules |= alike & self.loose[ends].any(axis=0)  # the loose one of two
-        return np.where(first[:, None], both[0], both[1]), np.asarray(rules, dtype=bool)
+        return np.where(first[:, None], laws[0], laws[1]), np.asarray(rules, dtype=bool)
 
 
 class KnownPairs(NamedTuple):
@@ -202,9 +202,9 @@ class PairsMet:
         known = self._known
         new = pair[~are_among(pair, known.numbers)]
         if len(new):
-            both = [np.concatenate(parts) for parts in zip(known, law(np.unique(new)), strict=True)]
-            order = both[0].argsort()
-            self._known = known = KnownPairs._make(part[order] for part in both)
+            merged = [np.concatenate(parts) for parts in zip(known, law(np.unique(new)), strict=True)]
+            order = merged[0].argsort()
+            self._known = known = KnownPairs._make(part[order] for part in merged)
         return known
 
 
@@ -243,11 +243,11 @@ class GivenPairs:
             self.known[number] = self.springs.of_pair(*divmod(number, self.blocks))
         return self.known[number]
 
-    def retardations(self, one: int, others: Integers) -> Array:
+    def retardations(self, block: int, others: Integers) -> Array:
         """Dashpot over spring of a block with others of higher numbers, zero where nothing is given [s], shape (n,)."""
         if isinstance(self.springs.pairs, PairProperties):
             return np.full(len(others), self.springs.pairs.retardation)
-        met = [self.of_pair(number) for number in (one * self.blocks + others).tolist()]
+        met = [self.of_pair(number) for number in (block * self.blocks + others).tolist()]
         return np.array([0.0 if meets is None else meets.retardation for meets in met])
 
     def take(self, pair: Integers, shared: Array, friction: Array) -> None:
@@ -276,23 +276,23 @@ def side_area(side: Side) -> float:
     return float(np.linalg.norm(np.subtract(*side.corners) if flat else area_vector(side.corners)))
 
 
-def _sums(of: Integers, values: Array, count: int) -> Array:
-    return np.asarray(np.bincount(of, weights=values, minlength=count), dtype=float)
+def _sums(group: Integers, values: Array, count: int) -> Array:
+    return np.asarray(np.bincount(group, weights=values, minlength=count), dtype=float)
 
 
-def _of_blocks(block: Integers, joints: Array, others: Array, blocks: int) -> tuple[Array, Array]:
+def _law_of_blocks(block: Integers, joints: Array, others: Array, blocks: int) -> tuple[Array, Array]:
     """What each block has, from its joints: below of all and then above of all. One without a joint has nothing."""
     joints, others = np.concatenate([joints, joints]), np.concatenate([others, others])
     sums = np.column_stack([_sums(block, column, blocks) for column in joints.T])
-    stiffest, least = np.zeros(blocks), np.zeros((blocks, others.shape[1]))
+    stiffest, least_values = np.zeros(blocks), np.zeros((blocks, others.shape[1]))
     np.maximum.at(stiffest, block, joints[:, 0])
-    least[block] = others
-    np.minimum.at(least, block, others)
+    least_values[block] = others
+    np.minimum.at(least_values, block, others)
     share = np.maximum(stiffest / np.where(sums[:, 0] == 0, 1.0, sums[:, 0]), 0.5)
-    return share[:, None] * sums, least
+    return share[:, None] * sums, least_values
 
 
-def _of_loose(scene: Scene, joints: Array, others: Array, loose: Flags) -> tuple[Array, Array]:
+def _law_of_loose(scene: Scene, joints: Array, others: Array, loose: Flags) -> tuple[Array, Array]:
     """What loose blocks have over their largest faces. Of joints that are as soft, the softest along the face counts,
     then the least damped and the smoothest one."""
     assert scene.springs is not None
@@ -324,28 +324,29 @@ def longest_steps_of(solids: Sequence[Solid], law: PairLaw, slowest: Array, syst
     damped[slower, 1] = slowest[slower] * shared[slower, 0]
     sprung = slower & np.isfinite(shared[:, 2])
     damped[sprung, 3] = slowest[sprung] * shared[sprung, 2]
-    both = np.array([0, 1, 0, 1, 0]) > 0
+    is_dashpot = np.array([0, 1, 0, 1, 0]) > 0
     of_requested, slow = (
-        longest_step_of_some(solids, slower, law, each, system) for each in (np.where(both, 0.0, shared), damped)
+        longest_step_of_some(solids, slower, law, springs, system)
+        for springs in (np.where(is_dashpot, 0.0, shared), damped)
     )
     return LongestSteps(loose, of_requested, slow / of_requested)
 
 
-def longest_step_of_some(solids: Sequence[Solid], some: Flags, law: PairLaw, shared: Array, system: System) -> float:
+def longest_step_of_some(solids: Sequence[Solid], flags: Flags, law: PairLaw, shared: Array, system: System) -> float:
     """The longest stable step of some blocks by their law with other springs and dashpots, see `PairLaw.of_block`
     [s]."""
-    tables, kept, in_space = [rows(system.lines.dtype, 0)], list[int](), len(system.axes) == 3
-    for i in np.flatnonzero(some).tolist():
+    tables, body_numbers, in_space = [rows(system.lines.dtype, 0)], list[int](), len(system.axes) == 3
+    for i in np.flatnonzero(flags).tolist():
         solid = solids[i]
         centroid = solid.rest if in_space else solid.rest[::2]
         for corners, normal, springs in _springs(solid, shared[i]):
             columns = dict(zip((*SHARED_COLUMNS, *INTENSIVE), (*springs, *law.of_block[1][i]), strict=True))
-            ends: dict[str, Any] = {"body": len(kept), "face": -1, "at": corners - centroid, "normal": -normal}
+            ends: dict[str, Any] = {"body": len(body_numbers), "face": -1, "at": corners - centroid, "normal": -normal}
             tables.append(rows(system.lines.dtype, len(corners), **ends, **columns))
-            kept.append(solid.body)
-    if not kept:
+            body_numbers.append(solid.body)
+    if not body_numbers:
         return math.inf
-    bodies = chosen(system.bodies, np.array(kept))
+    bodies = chosen(system.bodies, np.array(body_numbers))
     return longest_step(system._replace(bodies=bodies, lines=joined(*tables), laws=(), links=()))
 
 

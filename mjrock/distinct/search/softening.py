@@ -108,9 +108,9 @@ def split(sides: Sides, room: Room) -> None:
     """Divide the springs of each place between its two bodies in proportion to their loads."""
     for p in range(sides.bodies.shape[1]):
         if sides.bodies[0, p] >= 0 and sides.bodies[1, p] >= 0:
-            one, other = room.loads[sides.bodies[0, p]], room.loads[sides.bodies[1, p]]
-            if one > 0 and other > 0:
-                room.shares[0, p], room.shares[1, p] = one / (one + other), other / (one + other)
+            load, other_load = room.loads[sides.bodies[0, p]], room.loads[sides.bodies[1, p]]
+            if load > 0 and other_load > 0:
+                room.shares[0, p], room.shares[1, p] = load / (load + other_load), other_load / (load + other_load)
 
 
 @inlined

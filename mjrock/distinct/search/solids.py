@@ -97,7 +97,7 @@ class Solids(NamedTuple):
 
     def moved(self, place: Array, change: Array) -> Solids:
         """The blocks at centroids [m], shape (blocks, 3), turned from where they are by rotations less 1."""
-        corners, normals, edges = (np.empty_like(each) for each in (self.corners, self.normals, self.edges))
+        corners, normals, edges = (np.empty_like(array) for array in (self.corners, self.normals, self.edges))
         moved = self._replace(corners=corners, normals=normals, edges=edges)
         move(self, place, change, moved)
         return moved
@@ -184,9 +184,9 @@ def _lengths(corners: Array, outlines: Sequence[Integers]) -> Array:
     """Length of each outline, from the numbers of its corners [m], shape (outlines,)."""
     counts, lengths = np.array([len(outline) for outline in outlines]), np.empty(len(outlines))
     for count in np.unique(counts):
-        which = np.flatnonzero(counts == count)
-        rings = corners[np.array([outlines[i] for i in which.tolist()])]
-        lengths[which] = np.linalg.norm(np.roll(rings, -1, axis=1) - rings, axis=2).sum(axis=1)
+        numbers = np.flatnonzero(counts == count)
+        rings = corners[np.array([outlines[i] for i in numbers.tolist()])]
+        lengths[numbers] = np.linalg.norm(np.roll(rings, -1, axis=1) - rings, axis=2).sum(axis=1)
     return lengths
 
 
@@ -205,7 +205,7 @@ def _reaching(corners: Array, half: float) -> Array:
 def sides_of(solids: Sequence[Solid]) -> Integers:
     """A number of the side of its block that each face of each part lies on, shape (faces,). Faces of parts that lie
     in one plane across a cut have one number, in space where they make a convex side, as their joints do."""
-    first, same = 0, list[tuple[int, int]]()
+    first, flush_pairs = 0, list[tuple[int, int]]()
     for solid in solids:
         begin = first + np.cumsum([0, *map(len, solid.inside)])
         for side in (side for side in solid.sides if len(side.parts) > 1):
@@ -215,9 +215,9 @@ def sides_of(solids: Sequence[Solid]) -> Integers:
                 for face in np.flatnonzero(~solid.inside[part]).tolist()
                 if _is_flush(solid.drawn[part], face, side)
             ]
-            same += pairwise(faces)
+            flush_pairs += pairwise(faces)
         first = int(begin[-1])
-    return connected_parts(same, first) if same else np.arange(first)
+    return connected_parts(flush_pairs, first) if flush_pairs else np.arange(first)
 
 
 def _is_flush(part: Convex, face: int, side: Side) -> bool:
@@ -238,8 +238,8 @@ def whole_outlines(outlines: Sequence[Integers], side: Integers, corners: Array,
         corners, normals: of all, shape (corners, 3) and (faces, 3).
     """
     around = list(outlines)
-    of, counts = np.unique(side, return_counts=True)
-    for number in of[counts > 1]:
+    sides, counts = np.unique(side, return_counts=True)
+    for number in sides[counts > 1]:
         faces = np.flatnonzero(side == number)
         points = np.unique(np.concatenate([outlines[face] for face in faces.tolist()]))
         flat = corners[points] @ tangent_axes(normals[faces[:1]])[0].T

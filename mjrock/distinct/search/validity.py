@@ -249,7 +249,7 @@ def mark_outdated(motion: Motion, sizes: Array, limits: Limits, validity: Validi
     Returns:
         Whether the contacts of a block are outdated.
     """
-    some, left, interval = False, validity.left, limits.interval
+    any_outdated, left, interval = False, validity.left, limits.interval
     for block in range(len(sizes)):
         speed, size, searched, valid_for = speed_of(motion, block), sizes[block], validity.searched[block], interval
         if searched:
@@ -267,8 +267,8 @@ def mark_outdated(motion: Motion, sizes: Array, limits: Limits, validity: Validi
             validity.searches[block] += 1
             record(validity.motion, motion, block)
         validity.outdated[block] = outdated
-        some = some or outdated
-    return some
+        any_outdated = any_outdated or outdated
+    return any_outdated
 
 
 @inlined
@@ -283,14 +283,14 @@ def approach_speed(motion: Motion, one: int, other: int) -> float:
 
 @compiled_at_once
 def set_validity(
-    found: ContactPlaces, motion: Motion, sizes: Array, validity: Validity, may_touch: Flags, interval: float
+    places: ContactPlaces, motion: Motion, sizes: Array, validity: Validity, may_touch: Flags, interval: float
 ) -> None:
     """Write for how long the contacts that a search has found are valid.
 
     Those of a pair are valid until either block is searched again: the faster one, if it was searched now.
 
     Args:
-        found: the places.
+        places: that are found.
         motion, sizes: of the blocks.
         validity: which blocks were searched.
         may_touch: room for whether each place may touch by then, shape (n,).
@@ -301,17 +301,17 @@ def set_validity(
         if outdated[block]:
             valid_for[block] = interval
     for turn in range(2):
-        for i in range(len(found.gap)):
-            one, other = found.face[i], found.other[i]
+        for i in range(len(places.gap)):
+            one, other = places.face[i], places.other[i]
             speed, size = approach_speed(motion, one, other), min(sizes[one], sizes[other])
             if turn == 0:
-                valid = max(VALID_APPROACH * size, 0.5 * found.gap[i]) / max(speed, 1e-9)
+                valid = max(VALID_APPROACH * size, 0.5 * places.gap[i]) / max(speed, 1e-9)
                 first = outdated[one] and (not outdated[other] or speed_of(motion, one) >= speed_of(motion, other))
                 block = one if first else other
                 valid_for[block] = min(valid_for[block], max(valid, SHORTEST_INTERVAL * interval))
             else:
                 until = min(valid_for[one], valid_for[other])
-                may_touch[i] = found.gap[i] < REACH * (speed * until + 2 * fall_within(interval) + NEAR * size)
+                may_touch[i] = places.gap[i] < REACH * (speed * until + 2 * fall_within(interval) + NEAR * size)
 
 
 @inlined
@@ -323,10 +323,10 @@ def update_joints(system: System, joints: JointState) -> None:
     for p in range(len(pairs)):
         line = system.lines[p]
         offset, normal, _, _ = position_over_face(system, line)
-        own, opening = in_world(system.bodies[line.body], read(line.normal)), dot(normal, offset)
+        line_normal, opening = in_world(system.bodies[line.body], read(line.normal)), dot(normal, offset)
         slip[pairs[p]] = max(slip[pairs[p]], math.sqrt(max(dot(offset, offset) - opening * opening, 0.0)))
         gap[pairs[p]] = min(gap[pairs[p]], opening)
-        tilt[pairs[p]] = max(tilt[pairs[p]], 1 - dot(own, normal))
+        tilt[pairs[p]] = max(tilt[pairs[p]], 1 - dot(line_normal, normal))
         line.widest = max(line.widest, opening)
 
 
@@ -349,17 +349,17 @@ def mark_left(laws: Tables, joints: JointState, handed_over: Flags, left: Flags)
             left[joints.blocks[pair, 0]] = left[joints.blocks[pair, 1]] = True
 
 
-def account(system: System, which: Integers, depth: Array) -> Account:
+def account(system: System, numbers: Integers, depth: Array) -> Account:
     """The account of some of the lines, with the normals that they have now, and write how deep each presses [m]."""
-    return Account(*sums(system, which, depth))
+    return Account(*sums(system, numbers, depth))
 
 
 @compiled_at_once
-def sums(system: System, which: Integers, depth: Array) -> tuple[float, ...]:
+def sums(system: System, numbers: Integers, depth: Array) -> tuple[float, ...]:
     """The numbers of an `account`."""
     energy = power = moved = rubbed = damped = 0.0
-    for i in range(len(which)):
-        line = system.lines[which[i]]
+    for i in range(len(numbers)):
+        line = system.lines[numbers[i]]
         meet = meeting(system, line)
         depth[i] = max(-meet.gap, 0.0)
         energy += stored(line, meet.gap)
