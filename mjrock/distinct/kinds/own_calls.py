@@ -16,7 +16,7 @@ from numba.extending import intrinsic
 from ...problem.wall.user_law import layout
 
 C_NUMBER, C_BYTES, C_NOTHING = ir.DoubleType(), ir.IntType(8).as_pointer(), ir.VoidType()
-OF_COMPILER = {"nogil": True, "error_model": "numpy"}
+OF_COMPILER = {"nogil": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 @intrinsic  # type: ignore[untyped-decorator]
