@@ -49,13 +49,13 @@ def kept_of(polygon: Array, inwards: Array) -> Array:
         polygon: its corners.
         inwards: these distances of the corners, shape (n,).
     """
-    kept = []
-    for i in range(len(polygon)):
+    kept, distances = [], inwards.tolist()
+    for i, distance in enumerate(distances):
         j = (i + 1) % len(polygon)
-        if inwards[i] >= 0:
+        if distance >= 0:
             kept.append(polygon[i])
-        if (inwards[i] >= 0) != (inwards[j] >= 0):
-            kept.append(polygon[i] + inwards[i] / (inwards[i] - inwards[j]) * (polygon[j] - polygon[i]))
+        if (distance >= 0) != (distances[j] >= 0):
+            kept.append(polygon[i] + distance / (distance - distances[j]) * (polygon[j] - polygon[i]))
     return np.array(kept)
 
 

@@ -129,7 +129,7 @@ def common_volume(solids: Solids, a: int, b: int) -> float:
                 if not len(polygon):
                     break
                 beyond = (polygon - corner) @ outwards
-                lowest, highest = beyond.min(), beyond.max()
+                lowest, highest = min(distances := beyond.tolist()), max(distances)
                 flush = -one_plane < lowest and highest < one_plane and normal @ outwards > 0
                 if not flush and highest > 0:
                     polygon = kept_of(polygon, -beyond)
