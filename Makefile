@@ -27,7 +27,7 @@ docs: $(DOCS) # the documentation, with the examples run: docs/build/html/index.
 	@echo "docs/build/html/index.html"
 
 test-slow: $(DOCS)
-	$(BIN)/pytest -n auto --dist worksteal -m slow
+	$(BIN)/pytest -n auto -m slow
 
 test-processors: $(TEST) # the everyday tests of the physics by the linear algebra of other processors; OTHERS=1 the few for .ci/run
 	$(BIN)/python tests/processors.py $(if $(OTHERS),--others)

@@ -30,6 +30,12 @@ def pytest_sessionstart(session: pytest.Session) -> None:
                 carry_out(number)
 
 
+def pytest_sessionfinish() -> None:
+    """The garbage of the tests is searched for once. Later searches of pytest leave out what is alive now."""
+    gc.collect()
+    gc.freeze()
+
+
 def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Name what last digits depend on, where a test has failed."""
     if terminalreporter.stats.get("failed") or terminalreporter.stats.get("error"):
