@@ -13,6 +13,7 @@ CONTACTS := out/contacts
 # Tests fill every core with processes. Where threads of BLAS wait for a core, small matrices take up to 200 times longer.
 test test-slow test-processors test-oldest test-installed test-contacts mutants: export OPENBLAS_NUM_THREADS = 1
 # Bytecode is stored: the processes that tests start then need not compile the package again, nor pytest rewrite its tests.
+# pip compiles none (--no-compile): of the modules that it installs a run imports few.
 test test-slow test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 
 demo: $(READY)
@@ -60,7 +61,7 @@ test-installed:
 test-contacts:
 	rm -rf $(CONTACTS)
 	$(PYTHON) -m venv $(CONTACTS)/build
-	$(CONTACTS)/build/bin/python -m pip install --quiet --disable-pip-version-check 'hatchling>=1.27'
+	$(CONTACTS)/build/bin/python -m pip install --quiet --no-compile --disable-pip-version-check 'hatchling>=1.27'
 	cd packaging/mjcontacts && ../../$(CONTACTS)/build/bin/python -m hatchling build -t wheel -d ../../$(CONTACTS)/files
 	mkdir $(CONTACTS)/tests
 	cp tests/contacts/*.py tests/pairs.py tests/everyday.py $(CONTACTS)/tests
@@ -68,7 +69,7 @@ test-contacts:
 	cp packaging/mjcontacts/pyproject.toml $(CONTACTS)
 	for needs in 'mujoco==3.3.2 numpy==1.26.4' $(if $(OLDEST_ONLY),,'mujoco numpy'); do \
 		$(PYTHON) -m venv --clear $(CONTACTS)/venv && \
-		$(CONTACTS)/venv/bin/python -m pip install --quiet --disable-pip-version-check $$needs pytest $(CONTACTS)/files/*.whl && \
+		$(CONTACTS)/venv/bin/python -m pip install --quiet --no-compile --disable-pip-version-check $$needs pytest $(CONTACTS)/files/*.whl && \
 		(cd $(CONTACTS) && venv/bin/python -m pytest tests) || exit 1; \
 	done
 
@@ -95,10 +96,10 @@ robots: $(READY) # public robots; PACKAGES=folder of packages that carry their m
 	$(BIN)/python scripts/peers/robots/feet.py --packages $(PACKAGES)
 	$(if $(MJX),$(BIN)/python scripts/peers/robots/mjx_contacts.py --python $(MJX))
 
-$(READY): INSTALL = pip install --quiet --disable-pip-version-check
+$(READY): INSTALL = pip install --quiet --no-compile --disable-pip-version-check
 $(OLDEST)/.ready: PYTHON = python3.11
 $(OLDEST)/.ready: EXTRA = [test]
-$(OLDEST)/.ready: INSTALL = pip install --quiet --disable-pip-version-check uv && \
+$(OLDEST)/.ready: INSTALL = pip install --quiet --no-compile --disable-pip-version-check uv && \
 	$(OLDEST)/bin/python -m uv pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct
 
 # An environment whose Python is gone, or that belongs to another folder, is stale and is made anew.
@@ -116,11 +117,11 @@ $(READY) $(OLDEST)/.ready: %/.ready: pyproject.toml $$(STALE)
 	@touch $@
 
 $(TEST): $(READY)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --editable '.[test]'
 	@touch $@
 
 $(DOCS): $(TEST)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --editable '.[docs]'
 	@touch $@
 
 clean:
