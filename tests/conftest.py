@@ -46,7 +46,7 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
 def pytest_collection() -> Generator[None, object, object]:
     """What is collected stays to the end: no search for garbage goes through it, then or later. Searches are few."""
     gc.disable()
-    gc.set_threshold(20_000)
+    gc.set_threshold(100_000)
     try:
         return (yield)
     finally:

@@ -98,6 +98,7 @@ blocks = [{ thickness = 0.3, height = 1.2, length = 1.0 }]
 """
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::mjrock.Implausible")
 def test_masonry_under_records_has_the_verdict_of_its_runs(here, capsys):
     """That of the responses in Python, though a campaign has run them; a second call runs none again."""

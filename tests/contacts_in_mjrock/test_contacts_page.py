@@ -142,6 +142,7 @@ def test_a_contact_for_a_step_that_resolves_nothing_is_not_said_to_gain():
     assert "omega h = 0.96: e leaves out the step, and the rebound can be another; " in note
 
 
+@pytest.mark.slow
 def test_the_cost_of_impratio():
     """Iterations of the solver in a step, of three boxes of which the top one slides, and of a single one."""
     assert "1.1 iterations in a step instead of\n1.0; 1e8 takes 1.4 and 1e10 takes 5.5." in PAGE

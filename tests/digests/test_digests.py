@@ -14,6 +14,7 @@ SLOW = (
     "explicit, dome",
     "rest, vault",
     "MuJoCo fitted, box",
+    "MuJoCo fixed, drums",
     "SciPy, shaken",
     "push",
     "limit analysis, arch without dilatancy",

@@ -17,7 +17,7 @@ from mjrock.distinct.setup import setup_of
 TABLE = box(-1, 0, 0, 1, name="table")
 
 
-@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("d", among([2, 3], 3))
 def test_shear_springs_of_lines_and_bonds_hold_half_of_k_s_times_the_square_of_their_way(d):
     """Those of rigid friction hold nothing."""
     none = np.zeros(0, dtype=np.int64)

@@ -30,10 +30,11 @@ SMALL = DOCS / "figures" / "examples"
 BLOCK = re.compile(r"^```python\n(.*?)^```\n(?:\n*```text\n(.*?)^```\n)?", re.DOTALL | re.MULTILINE)
 """Lines of Python, and what they print where the page shows it right below."""
 NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e[+-]?\d+)?")
-RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md", "effects.md", "plain_models.md"]
-RUNS += ["notebook.md", "own_effect.md", "own_law.md", "solved_cases.md", "your_files.md"]
+RUNS = ["contacts_in_your_model.md", "stiffness.md", "damping.md", "solvers.md", "effects.md"]
+RUNS += ["notebook.md", "own_effect.md", "own_law.md", "solved_cases.md"]
 LONG = ["explicit.md", "tutorial.md", "analysis.md", "code_check.md", "masonry.md", "theory.md"]
 LONG += ["assessment_file.md", "results.md", "mortar.md", "slow_loading.md", "wind_earth_axles.md", "town.md"]
+LONG += ["plain_models.md", "your_files.md"]
 """Pages whose lines run."""
 ELSEWHERE = ["own_code.md", "stacks_grippers_feet.md"]
 """Pages whose lines run in tests of their own, since they are parts of files."""

@@ -62,7 +62,7 @@ def test_rounding_decides_nothing(seed):
 SAME = ("twice", "after_another", "in_threads", "from_the_middle", "mirrored", "renumbered", "in_space", "elsewhere")
 
 
-@pytest.mark.parametrize("glued", [False, True])
+@pytest.mark.parametrize("glued", among([False, True], True))
 @pytest.mark.parametrize("seed", [5, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (3, 6, 9, 16, 119))])
 def test_a_scene_whose_joints_have_own_laws(seed, glued):
     """Joints that stiffen, and glue with a memory, in the plane and in space, as stacks and walls and where blocks fall

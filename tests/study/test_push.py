@@ -188,6 +188,7 @@ def test_it_ends_where_nothing_is_borne_any_more(toppled):
     np.testing.assert_allclose(push.force, np.tan(ALPHA - rotation(push.displacement)), atol=0.01 * B / H)
 
 
+@pytest.mark.slow
 def test_blocks_that_are_wedged_end_it():
     cheeks = [[(-1, -1), (2, -1), (2, 0), (-1, 0)], [(0.5, 0), (1, 0), (1, 1), (0.5, 1)]]
     blocks = [*(mr.Polygon(cheek, fixed=True) for cheek in cheeks), mr.Polygon([(0, 0), (0.5, 0), (0.5, 1), (0, 1)])]

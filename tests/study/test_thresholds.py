@@ -93,6 +93,7 @@ def test_the_same_call_runs_nothing_again(tmp_path, monkeypatch):
     assert again.runs == first.runs
 
 
+@pytest.mark.slow
 def test_walls_and_masonry_of_many_blocks(tmp_path):
     """The first edge of a block under a half sine, in theory and as a stack of one by explicit steps, is that which a
     search by halving finds."""
