@@ -226,12 +226,12 @@ EQUIVALENT = {
             "if half <= SERIES_ANGLE:",
         )
     },
-    "handover.py: if square - deep * deep < bound and sense / there.sense * dot(normal, there.normal) > SAME_NORMAL:": (
+    "handover.py: if square - deep * deep < bound and sense / old_place.sense * dot(normal, old_place.normal) > SAME_NORMAL:": (
         "a sense is 1 or -1"
     ),
     "pair_law.py: per_area = per_area * np.append(length / of_joint / np.ones(4), "
     "np.ones_like(length), 1)": "one multiplies and divides alike",
-    "pair_law.py: least = np.ones(len(known) + 2)": "the last of them is read, and all are one",
+    "pair_law.py: least_shares = np.ones(len(known) + 2)": "the last of them is read, and all are one",
     "mortar.py: if gap <= 0 and bond.strength < math.inf:": "at a gap of zero nothing is crushed",
     "mortar.py: if gap < 1 and bond.strength < math.inf:": "what is open is not crushed by the law, either",
     "faces.py: if gap <= 0 and line.margin < math.inf:": "at a gap of zero nothing presses",
@@ -282,17 +282,17 @@ EQUIVALENT = {
         f"clipping.py: {line}": "what is no corner lies on one edge alone"
         for line in ("if distance <= from_edge:", "if distance <= from_crossed:")
     },
-    "clipping.py: distance = distance_from(off, scaled(1, own), own)": "both ends of an edge lie on its line",
+    "clipping.py: distance = distance_from(off, scaled(1, edge_below), edge_below)": "both ends of an edge lie on its line",
     "clipping.py: faces = face, face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))": (
         "a direction may have any length"
     ),
     **{
         f"finder.py: {line}": "there is more room than is taken"
         for line in (
-            "self._work = Workspace(rows(PLACE, 512), np.empty((4 * most + 4, 3)))",
-            "self._work = Workspace(rows(PLACE, 256), np.empty((8 * most + 4, 3)))",
-            "self._work = Workspace(rows(PLACE, 256), np.empty((4 * most + 8, 3)))",
-            "self._work = Workspace(rows(PLACE, 256), np.empty((4 * most + 4, 6)))",
+            "self._work = Workspace(rows(PLACE, 512), np.empty((4 * most_corners + 4, 3)))",
+            "self._work = Workspace(rows(PLACE, 256), np.empty((8 * most_corners + 4, 3)))",
+            "self._work = Workspace(rows(PLACE, 256), np.empty((4 * most_corners + 8, 3)))",
+            "self._work = Workspace(rows(PLACE, 256), np.empty((4 * most_corners + 4, 6)))",
             "self._work = self._work._replace(places=rows(PLACE, 4 * count))",
         )
     },
@@ -306,7 +306,7 @@ EQUIVALENT = {
     "finder.py: normal = normal * np.hypot(normal[:, 0], normal[:, 1])[:, None]": (
         "sides of prisms have normals in the plane, of unit length but for rounding"
     ),
-    "finder.py: share = found.share * np.where(over, found.area / np.where(over, in_pair, 2.0), 1.0)": (
+    "finder.py: share = places.share * np.where(over, places.area / np.where(over, in_pair, 2.0), 1.0)": (
         "what an edge is divided by is not taken"
     ),
     "finder.py: other_face, other_distance = (-2, -math.inf) if distance > reach else separating_face(solids, b, a, "
@@ -315,7 +315,7 @@ EQUIVALENT = {
         f"finder.py: {line}": "a direction may have any length"
         for line in (
             "over = face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))",
-            "other, other_edge = edge_towards(solids, blocks[1], scaled(-2.0, normal))",
+            "other_start, other_edge = edge_towards(solids, blocks[1], scaled(-2.0, normal))",
         )
     },
     **{
@@ -346,10 +346,10 @@ EQUIVALENT = {
         "the first two are used"
     ),
     "validity.py: for turn in range(4):": "the passes after the second one find the same",
-    "validity.py: valid = max(VALID_APPROACH * size, 0.5 * found.gap[i]) / max(speed, 2e-09)": (
+    "validity.py: valid = max(VALID_APPROACH * size, 0.5 * places.gap[i]) / max(speed, 2e-09)": (
         "any small speed serves to divide by"
     ),
-    "validity.py: may_touch[i] = found.gap[i] <= REACH * (speed * until + 2 * fall_within(interval) + NEAR * size)": (
+    "validity.py: may_touch[i] = places.gap[i] <= REACH * (speed * until + 2 * fall_within(interval) + NEAR * size)": (
         "no gap is the bound to the last bit"
     ),
     **{
