@@ -93,7 +93,8 @@ class Assessment:
         Raises:
             AssessmentError: with the line of the mechanism that cannot be run, and why.
         """
-        return {name: self._call(one, one.analyses) for name, one in (self.moved or self.mechanisms).items()}
+        mechanisms = self.moved or self.mechanisms
+        return {name: self._call(mechanism, mechanism.analyses) for name, mechanism in mechanisms.items()}
 
     def run(self) -> dict[str, list[Response]]:
         """The responses of all runs, by mechanism, see `analyses`."""
@@ -109,7 +110,7 @@ class Assessment:
             runs: responses by mechanism, such as those of `run`.
         """
         mechanisms = {name: self.mechanisms[name] for name in runs}
-        return {name: self._call(one, partial(one.dynamic, runs[name])) for name, one in mechanisms.items()}
+        return {name: self._call(item, partial(item.dynamic, runs[name])) for name, item in mechanisms.items()}
 
     def design(self) -> Design:
         """The first of the values of `[design]` for which every condition holds.
@@ -207,16 +208,16 @@ class Assessment:
                 tables |= mechanism_table(self.mechanisms[""])
             else:
                 named = self.mechanisms.items()
-                tables["mechanisms"] = {name: mechanism_table(one, ("mechanisms", name)) for name, one in named}
+                tables["mechanisms"] = {name: mechanism_table(item, ("mechanisms", name)) for name, item in named}
             tables |= {"report": values_of(self.texts, report_maker().keys, ("report",))} if self.texts else {}
         except UnwrittenError as error:
             raise self._error(error.place, str(error)) from None
         reread = assessment_of(tables, folder=self.folder)
         for name, mechanism in () if reread == self else self.mechanisms.items():
             for part in (part.name for part in fields(mechanism) if part.compare):
-                own, of_file = getattr(mechanism, part), getattr(reread.mechanisms[name], part)
-                if own != of_file:
-                    text = f"{name or 'mechanism'}: its {part} is {own!r:.300}; a file gives {of_file!r:.300}"
+                value, of_file = getattr(mechanism, part), getattr(reread.mechanisms[name], part)
+                if value != of_file:
+                    text = f"{name or 'mechanism'}: its {part} is {value!r:.300}; a file gives {of_file!r:.300}"
                     raise self._error((), text)
         return tables
 
@@ -344,9 +345,9 @@ def assessment_of(
     if not mechanisms and not reader.faults:
         reader.refusal((), "{place} has no mechanism; give it a table [wall], or several under [mechanisms.NAME]")
     reader.require_sound()
-    rest: dict[str, Any] = {"source": source, "folder": folder, "texts": texts, "trials": trials or {}}
-    rest["confined"] = confined
-    return Assessment(mechanisms, name=name, document=document, **rest, **file_values)
+    details: dict[str, Any] = {"source": source, "folder": folder, "texts": texts, "trials": trials or {}}
+    details["confined"] = confined
+    return Assessment(mechanisms, name=name, document=document, **details, **file_values)
 
 
 def _texts(reader: Reader, top: Table) -> dict[str, Any]:

@@ -78,12 +78,12 @@ class Maker:
     keys: Mapping[str, Key]
     doc: str
 
-    def missing(self, given: Collection[str]) -> list[Key]:
+    def missing(self, known: Collection[str]) -> list[Key]:
         """Keys that are needed beside those that are given. A point of masonry, `at`, stands for a height."""
         return [
             key
             for name, key in self.keys.items()
-            if key.is_needed and name not in given and not (name == "height" and "at" in given)
+            if key.is_needed and name not in known and not (name == "height" and "at" in known)
         ]
 
     def without(self, *names: str) -> Maker:
@@ -100,10 +100,10 @@ def kinds_of(hint: Hint) -> tuple[Hint, ...]:
     may be a number too."""
     kinds = alternatives(hint)
     if complex in kinds:  # ArrayLike, which has much that a file has not
-        return (float, np.ndarray, *(one for one in kinds if isinstance(one, type) and is_dataclass(one)))
+        return (float, np.ndarray, *(kind for kind in kinds if isinstance(kind, type) and is_dataclass(kind)))
     if known := [note for note in getattr(hint, "__metadata__", ()) if isinstance(note, OneOf)]:
-        kinds = tuple(Literal[known[0].texts] if one is str else one for one in kinds)
-    return tuple(one for one in kinds if one is not type(None) and get_origin(one) is not Callable)
+        kinds = tuple(Literal[known[0].texts] if kind is str else kind for kind in kinds)
+    return tuple(kind for kind in kinds if kind is not type(None) and get_origin(kind) is not Callable)
 
 
 def is_path(kinds: Sequence[Hint]) -> bool:
@@ -113,11 +113,11 @@ def is_path(kinds: Sequence[Hint]) -> bool:
 
 def items_of(kind: Hint) -> tuple[Hint, ...] | None:
     """The types of the items of a sequence: one for each place of a tuple, or one and an ellipsis; None of others."""
-    origin, of = get_origin(kind), get_args(kind)
+    origin, arguments = get_origin(kind), get_args(kind)
     if origin is tuple:
-        return of
+        return arguments
     if isinstance(origin, type) and issubclass(origin, Sequence):
-        return *of, ...
+        return *arguments, ...
     return None
 
 
@@ -129,21 +129,21 @@ def choices_of(kind: Hint) -> tuple[str, ...]:
 @cache
 def described(call: Callable[..., object]) -> dict[str, str]:
     """What the docstring of a class or function says of each of its arguments."""
-    found: dict[str, str] = {}
+    docs: dict[str, str] = {}
     names: list[str] = []
     for line in _section(inspect.getdoc(call) or "", "Args").splitlines():
         if entry := ARGUMENT_ENTRY.match(line):
             names = entry[1].split(", ")
-            found |= {name: line[entry.end() :] for name in names}
+            docs |= {name: line[entry.end() :] for name in names}
         else:
-            found |= {name: f"{found[name]} {line.strip()}".strip() for name in names}
-    return found
+            docs |= {name: f"{docs[name]} {line.strip()}".strip() for name in names}
+    return docs
 
 
 def _section(text: str, head: str) -> str:
     """A section of a docstring."""
-    found = re.search(rf"^{head}:\n((?:    .*\n?|\n)+)", text, re.MULTILINE)
-    return found[1] if found else ""
+    match = re.search(rf"^{head}:\n((?:    .*\n?|\n)+)", text, re.MULTILINE)
+    return match[1] if match else ""
 
 
 @cache
@@ -151,32 +151,34 @@ def maker_of(call: Callable[..., object], owner: type | None = None) -> Maker:
     """The keys of a class, of a constructor of a class `owner`, or of a function."""
     parameters = inspect.signature(call).parameters.values()
     hints = hints_of(call)
-    own: dict[str, Key] = {}
+    keys: dict[str, Key] = {}
     docs = described(call)
     of_owner = {} if owner is None or call is owner else maker_of(owner).keys
-    for one in parameters:
-        if one.kind is one.VAR_KEYWORD:
-            own |= {name: key for name, key in _options(hints.get(one.name), of_owner).items() if name not in own}
-        elif one.kind is not one.VAR_POSITIONAL:
-            default = REQUIRED if one.default is one.empty else one.default
-            doc = docs.get(one.name, "")
+    for parameter in parameters:
+        if parameter.kind is parameter.VAR_KEYWORD:
+            keys |= {
+                name: key for name, key in _options(hints.get(parameter.name), of_owner).items() if name not in keys
+            }
+        elif parameter.kind is not parameter.VAR_POSITIONAL:
+            default = REQUIRED if parameter.default is parameter.empty else parameter.default
+            doc = docs.get(parameter.name, "")
             if owner is not None and ((shared := SHARED_DOC.search(doc)) or not doc):
-                doc = _as_of(owner, shared[1] if shared else "", one.name) or doc
-            key = Key(one.name, hints.get(one.name, Any), default, doc)
-            own |= {one.name: key} if key.kinds or default is REQUIRED else {}
-    return Maker(call, own, (inspect.getdoc(call) or "").partition("\n\n")[0].replace("\n", " "))
+                doc = _doc_as_of(owner, shared[1] if shared else "", parameter.name) or doc
+            key = Key(parameter.name, hints.get(parameter.name, Any), default, doc)
+            keys |= {parameter.name: key} if key.kinds or default is REQUIRED else {}
+    return Maker(call, keys, (inspect.getdoc(call) or "").partition("\n\n")[0].replace("\n", " "))
 
 
 def hints_of(call: Callable[..., object]) -> dict[str, Hint]:
     """The types of the arguments of a class or function, with what is declared of them."""
-    hints = _evaluated(call)
-    own = vars(call).get("__init__") if isinstance(call, type) else None
-    if inspect.isfunction(own) and own.__code__.co_filename != "<string>":  # not made by `dataclass`
-        hints |= _evaluated(own)
+    hints = _evaluated_hints(call)
+    constructor = vars(call).get("__init__") if isinstance(call, type) else None
+    if inspect.isfunction(constructor) and constructor.__code__.co_filename != "<string>":  # not made by `dataclass`
+        hints |= _evaluated_hints(constructor)
     return hints
 
 
-def _evaluated(call: Callable[..., object]) -> dict[str, Hint]:
+def _evaluated_hints(call: Callable[..., object]) -> dict[str, Hint]:
     """Annotations as types; a name that type checkers alone import stands for any type."""
     unknown: dict[str, Hint] = {}
     while True:
@@ -186,10 +188,10 @@ def _evaluated(call: Callable[..., object]) -> dict[str, Hint]:
             unknown[str(error.name)] = Any
 
 
-def _as_of(owner: type, name: str, argument: str) -> str:
+def _doc_as_of(owner: type, name: str, argument: str) -> str:
     """What another constructor of a class, or the class itself, says of an argument."""
-    other = getattr(owner, name, owner) if name else owner
-    return described(getattr(other, "__func__", other)).get(argument, "")
+    described_call = getattr(owner, name, owner) if name else owner
+    return described(getattr(described_call, "__func__", described_call)).get(argument, "")
 
 
 def _options(hint: Hint, of_owner: Mapping[str, Key]) -> dict[str, Key]:
@@ -198,7 +200,7 @@ def _options(hint: Hint, of_owner: Mapping[str, Key]) -> dict[str, Key]:
     if not is_typeddict(named):
         return {}
     hints = get_type_hints(named, include_extras=True)
-    return {name: of_owner.get(name, Key(name, one, None, "")) for name, one in hints.items()}
+    return {name: of_owner.get(name, Key(name, option_hint, None, "")) for name, option_hint in hints.items()}
 
 
 @cache
@@ -225,14 +227,14 @@ def _constructors(kind: type) -> set[str]:
 
 def subclasses_of(kind: type[object]) -> list[type[object]]:
     """A class and all that are derived from it, those of a user too, in the order in which they were defined."""
-    return [kind, *(one for sub in type.__subclasses__(kind) for one in subclasses_of(sub))]
+    return [kind, *(subclass for sub in type.__subclasses__(kind) for subclass in subclasses_of(sub))]
 
 
 @cache
 def public_names() -> Collection[str]:
     """The public names of the package. Modules of the wall are imported, so that its classes are known."""
     package = importlib.import_module(__package__.partition(".")[0])
-    for module in {one for one in package.HOME.values() if one.startswith("problem.wall.")}:
+    for module in {module_name for module_name in package.HOME.values() if module_name.startswith("problem.wall.")}:
         importlib.import_module(f"{package.__name__}.{module}")
     return tuple(package.HOME)
 
@@ -249,8 +251,8 @@ def classes_of(kinds: Sequence[Hint]) -> dict[str, type]:
     public_names()
     bases = [kind for kind in kinds if isinstance(kind, type)]
     bases += [CombinedEffect] if Effect in bases else []
-    classes = (one for base in bases for one in subclasses_of(base))
-    return {one.__name__: one for one in classes if is_dataclass(one) and is_public(one) and one is not Link}
+    classes = (subclass for base in bases for subclass in subclasses_of(base))
+    return {cls.__name__: cls for cls in classes if is_dataclass(cls) and is_public(cls) and cls is not Link}
 
 
 def key_named(key: Key) -> str:

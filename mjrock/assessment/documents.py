@@ -54,9 +54,11 @@ def table_of(value: Any, kinds: Sequence[Hint], place: Place) -> Tables:
         keys = {name: key for name, key in keys.items() if name not in ("b", "h")}
     elif kind.__name__ in USUAL_MAKE:
         table["make"] = kind.__name__
-    given = {name: getattr(value, name) for name in keys}
+    values = {name: getattr(value, name) for name in keys}
     return table | values_of(
-        {name: one for name, one in given.items() if not _is_default(one, keys[name].default)}, keys, place
+        {name: field for name, field in values.items() if not _is_default(field, keys[name].default)},
+        keys,
+        place,
     )
 
 
@@ -88,13 +90,13 @@ def file_value(value: object, kinds: Sequence[Hint], place: Place) -> object:
         name = getattr(value, "name", None)
         return name if str in kinds and isinstance(name, str) else table_of(value, kinds, place)
     if isinstance(value, Mapping):
-        return {str(name): file_value(one, (), (*place, str(name))) for name, one in value.items()}
-    if isinstance(value, Sequence) and all(isinstance(one, Support) for one in value) and value:
-        return {one.block: file_value(one.histories, (), (*place, one.block)) for one in value}
+        return {str(name): file_value(item, (), (*place, str(name))) for name, item in value.items()}
+    if isinstance(value, Sequence) and all(isinstance(support, Support) for support in value) and value:
+        return {support.block: file_value(support.histories, (), (*place, support.block)) for support in value}
     if isinstance(value, Sequence):
-        wholes = [getattr(one, "report_item", one) for one in value]  # the wedges in the place of their masses
-        pairs = [(whole, one) for whole, one in zip(wholes, value, strict=True) if whole is not None]
-        items = [whole if isinstance(whole, CombinedEffect) else one for whole, one in pairs]
+        wholes = [getattr(item, "report_item", item) for item in value]  # the wedges in the place of their masses
+        pairs = [(combined, item) for combined, item in zip(wholes, value, strict=True) if combined is not None]
+        items = [combined if isinstance(combined, CombinedEffect) else item for combined, item in pairs]
         hints = [hint for kind in kinds for hint in items_of(kind) or () if hint is not ...]
         item_kinds = [kind for hint in hints for kind in kinds_of(hint)]
         return [file_value(item, item_kinds, (*place, i)) for i, item in enumerate(items)]

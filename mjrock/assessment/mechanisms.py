@@ -131,7 +131,7 @@ class Mechanism:
             runs: responses, or the tasks of a campaign.
             kept: `store` and `histories` of the campaign.
         """
-        options = dict(self.shaking.dynamic) | {name: one for name, one in self.options.items() if name == "code"}
+        options = dict(self.shaking.dynamic) | {name: option for name, option in self.options.items() if name == "code"}
         return dynamic_check(runs, curve=self.limit_curve, **options | kept)
 
     def verdict_on(self, runs: Sequence[Response] | Sequence[Analysis], **kept: Path) -> DynamicCheck | None:
@@ -183,23 +183,23 @@ def _mechanism(reader: Reader, table: Table, own: set[str], taken: set[str]) -> 
         taken: the keys that any mechanism takes, to which this one adds its own.
     """
     try:
-        maker, rest = reader.choose_maker(table, MECHANISMS, "Case")
+        maker, content = reader.choose_maker(table, MECHANISMS, "Case")
     except RefusedError:
         taken |= set(table.values)
         return None
     arguments = {key_named(key) for key in maker.keys.values()} | set(SECTIONS)
     taken |= (arguments | set(OWN_KEYS)) & set(table.values)
-    rest = rest.without(*(set(rest.values) - arguments - own))
-    options = _options(reader, rest, "check", CHECK)
-    curve = _options(reader, rest, "limit_curve", CURVE)
-    demand = reader.attempt(lambda: _demand(reader, rest, options))
-    problem = reader.attempt(lambda: reader.make(rest.without(*SECTIONS), maker))
+    content = content.without(*(set(content.values) - arguments - own))
+    options = _options(reader, content, "check", CHECK)
+    curve = _options(reader, content, "limit_curve", CURVE)
+    demand = reader.attempt(lambda: _demand(reader, content, options))
+    problem = reader.attempt(lambda: reader.make(content.without(*SECTIONS), maker))
     if problem is None:
         return None
     spectrum = next(iter(demand.values())) if isinstance(demand, Mapping) else demand
     ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
     wall = getattr(case_of(problem), "block", None)
-    shaking = reader.attempt(lambda: shaking_of(reader, rest, wall, ground))
+    shaking = reader.attempt(lambda: shaking_of(reader, content, wall, ground))
     return Mechanism(problem, demand, options, curve, shaking or Shaking(), table.place)
 
 
@@ -243,8 +243,8 @@ def _demand(reader: Reader, table: Table, options: Mapping[str, Any]) -> Demand 
 
 def _spectrum(reader: Reader, site: Table, table: Table) -> CodeSpectrum | PointSpectrum | FloorSpectrum:
     """The spectrum of a site, or of the floor above it that a mechanism stands on."""
-    maker, rest = reader.choose_maker(site, SITES, "code_spectrum")
-    ground = reader.make(rest, maker)
+    maker, content = reader.choose_maker(site, SITES, "code_spectrum")
+    ground = reader.make(content, maker)
     if "floor" not in table.values:
         return ground  # type: ignore[no-any-return]
     return reader.make(reader.required_table(table, "floor"), replace(FLOOR, call=ground.at_height))  # type: ignore[no-any-return]

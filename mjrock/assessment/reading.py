@@ -74,7 +74,7 @@ class Reader:
     def require_sound(self) -> None:
         """Raise an AssessmentError with all that is wrong, in the order of the file."""
         if self.faults:
-            faults = dict.fromkeys(sorted(self.faults, key=lambda one: one.line or 0))
+            faults = dict.fromkeys(sorted(self.faults, key=lambda fault: fault.line or 0))
             raise AssessmentError(tuple(faults), self.name, self.language)
 
     def make(self, table: Table, maker: Maker, given: Mapping[str, object] | None = None) -> Any:
@@ -193,7 +193,7 @@ class Reader:
             return value
         if numeric and isinstance(value, str | int | float):
             return self._number(kinds, within, value, place)
-        raise self._wrong(place, value, kinds, within)
+        raise self._wrong_type(place, value, kinds, within)
 
     def _text(self, kinds: tuple[Hint, ...], value: str, place: Place) -> object:
         """A text, one of several, or a path from the folder of the file."""
@@ -236,17 +236,17 @@ class Reader:
         rows = [items for kind in kinds if (items := items_of(kind)) is not None]
         if not rows:
             if any(kind is np.ndarray or get_origin(kind) is np.ndarray for kind in kinds):
-                return [self._of_kinds((float, np.ndarray), within, one, (*place, i)) for i, one in enumerate(value)]
-            raise self._wrong(place, value, kinds, within)
+                return [self._of_kinds((float, np.ndarray), within, item, (*place, i)) for i, item in enumerate(value)]
+            raise self._wrong_type(place, value, kinds, within)
         fitting = [items for items in rows if items[-1] is ... or len(items) == len(value)]
         if not fitting:
             raise self.refusal(place, "{place} has {count} values; it takes {due}", count=len(value), due=len(rows[0]))
         items_read, has_fault = [], False
-        for i, one in enumerate(value):
+        for i, item_value in enumerate(value):
             item = fitting[0][0 if fitting[0][-1] is ... else i]
-            item_place = one.place if isinstance(one, Table) else (*place, i)
+            item_place = item_value.place if isinstance(item_value, Table) else (*place, i)
             try:
-                items_read.append(self._of_kinds(*kinds_and_range(item, within), one, item_place))
+                items_read.append(self._of_kinds(*kinds_and_range(item, within), item_value, item_place))
             except RefusedError:
                 has_fault = True
         if has_fault:
@@ -257,16 +257,16 @@ class Reader:
         """What a table within another stands for: an object of one of some classes, or texts by name."""
         classes = classes_of(kinds)
         if classes:
-            maker, rest = self.choose_maker(table, {name: makers_of(kind) for name, kind in classes.items()})
-            return self.make(rest, maker)
+            maker, content = self.choose_maker(table, {name: makers_of(kind) for name, kind in classes.items()})
+            return self.make(content, maker)
         mapped = next((kind for kind in kinds if get_origin(kind) is not None and is_mapping(kind)), None)
         if mapped is not None:
             item_kinds, within = kinds_and_range(get_args(mapped)[1], None)
             items = table.values.items()
             return {name: self._of_kinds(item_kinds, within, item, table.place_of(name)) for name, item in items}
-        raise self._wrong(table.place, table, kinds, None)
+        raise self._wrong_type(table.place, table, kinds, None)
 
-    def _wrong(self, place: Place, value: object, kinds: tuple[Hint, ...], within: Within | None) -> RefusedError:
+    def _wrong_type(self, place: Place, value: object, kinds: tuple[Hint, ...], within: Within | None) -> RefusedError:
         """Keep that a value is of another type."""
         values = {"value": spelt_value(value), "due": spelt_kinds(kinds, within)}
         return self.refusal(place, "{place} is {value}; it takes {due}", **values)
@@ -282,7 +282,7 @@ class Reader:
         """The key that an error of a class or function is about, and its message."""
         text, names = str(error), {name: key_named(key) for name, key in maker.keys.items()}
         place = _named_in(text, table, names)
-        key = next((one for one in maker.keys.values() if table.place_of(key_named(one)) == place), None)
+        key = next((known for known in maker.keys.values() if table.place_of(key_named(known)) == place), None)
         within = None if key is None else key.within
         return place, caused(place, error, table.values.get(str(place[-1])) if key else None, within)
 

@@ -87,10 +87,10 @@ def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: objec
     if not table.values.keys() & {"restitution", "contacts", "records", "run"}:
         return Shaking(solver=usual_solver(wall))
     if "restitution" in table.values or wall is not None:
-        values["e"] = _from_wall_table(reader, table, "restitution", makers_of(Restitution), wall)
+        values["e"] = _made_of_wall(reader, table, "restitution", makers_of(Restitution), wall)
     if "contacts" in table.values:
         arguments = {} if values.get("e") is None else {"e": values["e"]}
-        values["contacts"] = _from_wall_table(reader, table, "contacts", makers_of(Contacts), wall, arguments)
+        values["contacts"] = _made_of_wall(reader, table, "contacts", makers_of(Contacts), wall, arguments)
     if "run" in table.values:
         values |= _run(reader, reader.required_table(table, "run"), wall)
     if "dynamic_check" in table.values:
@@ -100,16 +100,16 @@ def shaking_of(reader: Reader, table: Table, wall: Block | None, spectrum: objec
     return Shaking(**values)
 
 
-def _from_wall_table(
+def _made_of_wall(
     reader: Reader, table: Table, name: str, makers: Makers, wall: Block | None, given: Mapping[str, Any] | None = None
 ) -> Any:
     """Restitution or contacts of a wall; the usual ones where the file has no table of them."""
     own_table = reader.required_table(table, name) if name in table.values else Table((*table.place, name))
     if wall is None:
         raise reader.refusal(own_table.place, "{place} is of a wall, and masonry has joints; leave it out")
-    maker, rest = reader.choose_maker(own_table, {next(iter(makers.values())).call.__name__: makers})
+    maker, content = reader.choose_maker(own_table, {next(iter(makers.values())).call.__name__: makers})
     arguments = {"wall": wall, **(given or {})}
-    return reader.make(rest, maker, {key: arguments[key] for key in maker.keys if key in arguments})
+    return reader.make(content, maker, {key: arguments[key] for key in maker.keys if key in arguments})
 
 
 def usual_solver(wall: Block | None) -> str:
@@ -157,17 +157,17 @@ def _required_spectrum(reader: Reader, table: Table, spectrum: object) -> Spectr
 def _records_of_table(reader: Reader, table: Table) -> RecordSet:
     """The records of a table. One that makes a single motion makes one for each value where a key that takes a number
     has a list, as of seeds."""
-    maker, rest = reader.choose_maker(table, RECORDS, "records_in")
+    maker, content = reader.choose_maker(table, RECORDS, "records_in")
     lists = {
         name: value
-        for name, value in rest.values.items()
+        for name, value in content.values.items()
         if isinstance(value, list) and name in maker.keys and set(maker.keys[name].kinds) <= {int, float}
     }
     if not lists:
-        made = reader.make(rest, maker)
-        return made if isinstance(made, RecordSet) else RecordSet({made.name: (made,)})
+        records = reader.make(content, maker)
+        return records if isinstance(records, RecordSet) else RecordSet({records.name: (records,)})
     records_by_value = RecordSet()
     for values in product(*lists.values()):
-        motion = reader.make(replace(rest, values=rest.values | dict(zip(lists, values, strict=True))), maker)
+        motion = reader.make(replace(content, values=content.values | dict(zip(lists, values, strict=True))), maker)
         records_by_value[f"{len(records_by_value)}: {motion.name}"] = (motion,)
     return records_by_value

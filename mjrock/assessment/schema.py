@@ -123,35 +123,35 @@ class SchemaWriter:
         """The tables beside those of the mechanism."""
         ground = self._kinds(SITES, partial=True, usual="code_spectrum")
         state = ground | {"description": "of one limit state of the code, with what it does not share"}
-        site = self._with(ground, dict.fromkeys(STATES, state))
+        site = self._with_keys(ground, dict.fromkeys(STATES, state))
         scaled = {"scaled_to": self._table(SCALED, partial=False)}
-        records = self._with(self._kinds(RECORDS, partial=partial, usual="records_in"), scaled)
+        records = self._with_keys(self._kinds(RECORDS, partial=partial, usual="records_in"), scaled)
         for part in records["anyOf"]:
-            part["properties"] = {name: _or_several(one) for name, one in part["properties"].items()}
+            part["properties"] = {name: _one_or_several(key_schema) for name, key_schema in part["properties"].items()}
         schema: Schema = {"site": site}
         schema |= {
             name: self._table(maker, partial=partial)
             for name, maker in (("floor", FLOOR), ("check", CHECK), ("limit_curve", CURVE), ("dynamic_check", DYNAMIC))
         }
         for kind in (Restitution, Contacts):
-            makers = {name: one.without("wall", "e") for name, one in makers_of(kind).items()}
+            makers = {name: maker.without("wall", "e") for name, maker in makers_of(kind).items()}
             schema[kind.__name__.lower()] = self._kinds({kind.__name__: makers}, partial=partial)
         schema["records"] = {"anyOf": [records, {"type": "array", "items": records}]}
         schema["run"] = {"anyOf": [self._table(run_maker(name), partial=partial) for name in SOLVERS]}
-        for one, name in zip(schema["run"]["anyOf"], SOLVERS, strict=True):
-            one["properties"]["solver"] = {"const": name} | ({"default": name} if name == SOLVERS[0] else {})
+        for run_schema, name in zip(schema["run"]["anyOf"], SOLVERS, strict=True):
+            run_schema["properties"]["solver"] = {"const": name} | ({"default": name} if name == SOLVERS[0] else {})
         return schema
 
-    def _with(self, schema: Schema, further: Schema) -> Schema:
+    def _with_keys(self, schema: Schema, further: Schema) -> Schema:
         """What a table stands for, with further keys."""
-        parts = [self.parts[one["$ref"].removeprefix("#/$defs/")] for one in schema["anyOf"]]
+        parts = [self.parts[reference["$ref"].removeprefix("#/$defs/")] for reference in schema["anyOf"]]
         return {"anyOf": [part | {"properties": part["properties"] | further} for part in parts]}
 
     def _table(self, maker: Maker, *, partial: bool) -> Schema:
         """The schema of a table that stands for a call."""
         properties = {key_named(key): self.of_key(key, partial) for key in maker.keys.values()}
-        properties = {name: one for name, one in properties.items() if one}
-        needed, otherwise = ([key_named(key) for key in maker.missing(given)] for given in ((), ("at",)))
+        properties = {name: key_schema for name, key_schema in properties.items() if key_schema}
+        needed, otherwise = ([key_named(key) for key in maker.missing(known)] for known in ((), ("at",)))
         schema: Schema = {"type": "object", "description": maker.doc, "properties": properties}
         if "at" in properties and needed != otherwise and not partial:
             schema |= {"if": {"required": ["at"]}, "else": {"required": needed}}
@@ -188,7 +188,7 @@ class SchemaWriter:
 
     def of_key(self, key: Key, partial: bool = False) -> Schema:
         """The schema of a key; empty for one that a file cannot have."""
-        schema = self._of_kinds(key.kinds, key.within, partial)
+        schema = self._schema_of_kinds(key.kinds, key.within, partial)
         if not schema:
             return {}
         if key.doc:
@@ -199,7 +199,7 @@ class SchemaWriter:
             schema["default"] = key.default
         return schema
 
-    def _of_kinds(self, kinds: Iterable[Hint], within: Within | None, partial: bool = False) -> Schema:
+    def _schema_of_kinds(self, kinds: Iterable[Hint], within: Within | None, partial: bool = False) -> Schema:
         """The schema of a value of one of some types."""
         kinds = tuple(kinds)
         schemas: list[Schema] = []
@@ -218,19 +218,19 @@ class SchemaWriter:
             if (items := items_of(kind)) is not None:
                 schemas.append(self._list(items, within))
             elif is_mapping(kind):
-                values = self._of_kinds(*kinds_and_range(get_args(kind)[1], None))
+                values = self._schema_of_kinds(*kinds_and_range(get_args(kind)[1], None))
                 schemas.append({"type": "object", "additionalProperties": values})
         if classes := classes_of(kinds):
             schemas.append(self._kinds({name: makers_of(kind) for name, kind in classes.items()}, partial=partial))
-        schemas = [one for i, one in enumerate(schemas) if one and one not in schemas[:i]]
+        schemas = [part for i, part in enumerate(schemas) if part and part not in schemas[:i]]
         return (schemas[0] if len(schemas) == 1 else {"anyOf": schemas}) if schemas else {}
 
     def _list(self, items: tuple[Hint, ...], within: Within | None) -> Schema:
         """The schema of a list."""
         if items[-1] is ...:
-            item_schema = self._of_kinds(*kinds_and_range(items[0], within))
+            item_schema = self._schema_of_kinds(*kinds_and_range(items[0], within))
             return {"type": "array", "items": item_schema} if item_schema else {}
-        item_schemas = [self._of_kinds(*kinds_and_range(item, within)) for item in items]
+        item_schemas = [self._schema_of_kinds(*kinds_and_range(item, within)) for item in items]
         return {
             "type": "array",
             "prefixItems": item_schemas,
@@ -239,19 +239,19 @@ class SchemaWriter:
         }
 
 
-def _or_taken_away(one: Schema) -> Schema:
+def _or_taken_away(schema: Schema) -> Schema:
     """The schema of what may be shared: false takes it away."""
-    return {"anyOf": [one, {"const": False}], "description": "false: without the shared one"}
+    return {"anyOf": [schema, {"const": False}], "description": "false: without the shared one"}
 
 
-def _or_several(one: Schema) -> Schema:
+def _one_or_several(node: Schema) -> Schema:
     """The schema of a number of which several may be given, each for a record of its own."""
-    return {"anyOf": [one, {"type": "array", "items": one}]} | one_of_form(one) if "minimum" in one else one
+    return {"anyOf": [node, {"type": "array", "items": node}]} | one_of_form(node) if "minimum" in node else node
 
 
-def one_of_form(one: Schema) -> Schema:
+def one_of_form(schema: Schema) -> Schema:
     """What a form shows of a number."""
-    return {name: one[name] for name in ("description", "unit", "default") if name in one}
+    return {name: schema[name] for name in ("description", "unit", "default") if name in schema}
 
 
 def _number(kinds: tuple[Hint, ...], within: Within | None) -> Schema:

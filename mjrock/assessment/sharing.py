@@ -30,25 +30,25 @@ def shared(whole: Schema) -> Schema:
     def count(node: object) -> object:
         text = _text(node)
         counts[text] += 1
-        return _over_parts(node, count) if counts[text] == 1 else node
+        return _with_parts(node, count) if counts[text] == 1 else node
 
     def written(node: object) -> object:
         text = _text(node)
         if counts[text] == 1 or len(text) <= LONGEST_REPEATED:
-            return _over_parts(node, written)
+            return _with_parts(node, written)
         if text not in names:
             names[text] = f"part_{len(names) + 1}"
-            parts[names[text]] = _over_parts(node, written)
+            parts[names[text]] = _with_parts(node, written)
         return {"$ref": f"#/$defs/{names[text]}"}
 
     tables = whole["$defs"]
-    whole = whole | {"$defs": {name: _beyond(tables, name) for name in tables}}
+    whole = whole | {"$defs": {name: _beyond_free(tables, name) for name in tables}}
     count(whole)
-    made: Schema = _over_parts(whole, written)
-    return made | {"$defs": made["$defs"] | parts}
+    result: Schema = _with_parts(whole, written)
+    return result | {"$defs": result["$defs"] | parts}
 
 
-def _beyond(tables: Schema, name: str) -> Schema:
+def _beyond_free(tables: Schema, name: str) -> Schema:
     """A definition; where there is the same table with no key that it needs, of a mechanism that shares keys with
     others, as what it requires beyond that one."""
     table: Schema = tables[name]
@@ -56,21 +56,21 @@ def _beyond(tables: Schema, name: str) -> Schema:
     keys, own_keys = tables.get(free, {}).get("properties", {}), table.get("properties", {})
     if name == free or not keys or keys.keys() != own_keys.keys():
         return table
-    further = {key: one for key, one in own_keys.items() if one != keys[key] and "const" not in one}
+    further = {key: part for key, part in own_keys.items() if part != keys[key] and "const" not in part}
     needed = {"required": table["required"]} if "required" in table else {}
     return {"$ref": f"#/$defs/{free}"} | needed | ({"properties": further} if further else {})
 
 
-def _over_parts(node: object, call: Callable[[object], object]) -> Any:
+def _with_parts(node: object, call: Callable[[object], object]) -> Any:
     """A part of a schema, with what a function makes of each part in it."""
     if not isinstance(node, dict):
         return node
     result = dict(node)
     for key, value in node.items():
         if key in PARTS_BY_NAME:
-            result[key] = {name: call(one) for name, one in value.items()}
+            result[key] = {name: call(part) for name, part in value.items()}
         elif key in LISTED_PARTS:
-            result[key] = [call(one) for one in value]
+            result[key] = [call(part) for part in value]
         elif key in SINGLE_PART:
             result[key] = call(value)
     return result

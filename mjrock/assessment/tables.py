@@ -88,7 +88,7 @@ class Table:
 
     def without(self, *names: str) -> Table:
         """The table without some keys."""
-        return Table(self.place, {name: one for name, one in self.values.items() if name not in names}, self.places)
+        return Table(self.place, {name: item for name, item in self.values.items() if name not in names}, self.places)
 
     def place_of(self, name: str) -> Place:
         """Where a key stands, or would stand."""
@@ -114,9 +114,9 @@ def located(value: object, place: Place = ()) -> Any:
     """Nested dictionaries and lists as tables."""
     if isinstance(value, Mapping):
         keys = {str(name): (*place, str(name)) for name in value}
-        return Table(place, {str(name): located(one, (*place, str(name))) for name, one in value.items()}, keys)
+        return Table(place, {str(name): located(item, (*place, str(name))) for name, item in value.items()}, keys)
     if isinstance(value, list | tuple):
-        return [located(one, (*place, i)) for i, one in enumerate(value)]
+        return [located(item, (*place, i)) for i, item in enumerate(value)]
     return value
 
 
@@ -160,7 +160,7 @@ def is_deep(document: Document) -> bool:
     """Whether tables and lists are within each other more than MOST_LEVELS times."""
     level: list[Any] = [document]
     for _ in range(MOST_LEVELS):
-        inside = (one.values() if isinstance(one, Mapping) else one for one in level)
+        inside = (container.values() if isinstance(container, Mapping) else container for container in level)
         level = [value for values in inside for value in values if isinstance(value, Mapping | list)]
     return bool(level)
 
@@ -177,7 +177,7 @@ def _first_tables(text: str, count: int) -> dict[str, Any]:
     return {}
 
 
-def _has(document: Any, place: Place) -> bool:
+def _has_key(document: Any, place: Place) -> bool:
     """Whether tables have a key."""
     for part in place:
         try:
@@ -192,7 +192,7 @@ def line_of(place: Place, text: str) -> int | None:
     to which the text has it. None where it has neither."""
     count = text.count("\n") + 1
     tables, ends = _first_tables(text, count), range(len(place), 0, -1)
-    known_place = next((place[:end] for end in ends if _has(tables, place[:end])), None)
+    known_place = next((place[:end] for end in ends if _has_key(tables, place[:end])), None)
     if known_place is None:
         return None
-    return bisect_left(range(count), True, lo=1, key=lambda lines: _has(_first_tables(text, lines), known_place))
+    return bisect_left(range(count), True, lo=1, key=lambda lines: _has_key(_first_tables(text, lines), known_place))

@@ -32,7 +32,7 @@ def seeds() -> dict[str, dict[str, Any]]:
     """The values of each template by its name, with what they share, and its `title`."""
     tables = tomllib.loads(TEMPLATE_FILE.read_text(encoding="utf-8"))
     shared = tables.pop("shared")
-    return {name: merged(shared, own) for name, own in tables.items()}
+    return {name: merged(shared, table) for name, table in tables.items()}
 
 
 def merged(shared: Document, own: Document) -> dict[str, object]:
@@ -62,11 +62,11 @@ class Writer:
     def alternatives(self, node: Part) -> list[Part]:
         """What a value may be, each without references."""
         if "$ref" in node:
-            rest = {key: value for key, value in node.items() if key != "$ref"}
+            beside = {key: value for key, value in node.items() if key != "$ref"}
             definition = self.schema["$defs"][node["$ref"].removeprefix("#/$defs/")]
-            return [{**one, **rest} for one in self.alternatives(definition)]
+            return [{**alternative, **beside} for alternative in self.alternatives(definition)]
         several = node.get("anyOf") or node.get("oneOf")
-        return [one for each in several for one in self.alternatives(each)] if several else [node]
+        return [alternative for branch in several for alternative in self.alternatives(branch)] if several else [node]
 
     def fitting(self, node: Part, value: Document) -> Part:
         """The alternative that a table is of, by its `kind` and `make`."""
@@ -110,22 +110,24 @@ class Writer:
                 yield from ("", *comment(schema.get("description", node.get("description", ""))), f"[{path}]")
             yield from self.table(node, value, path)
             return
-        items = [item for one in self.alternatives(node) for item in [one.get("items")] if item]
-        for one in value:
-            schema = self.fitting({"anyOf": items}, one)
+        items = [item for alternative in self.alternatives(node) for item in [alternative.get("items")] if item]
+        for table in value:
+            schema = self.fitting({"anyOf": items}, table)
             yield from ("", *comment(schema.get("description", "")), f"[[{path}]]")
-            yield from self.table(schema, one, path)
+            yield from self.table(schema, table, path)
 
     def holds_tables(self, node: Part) -> bool:
         """Whether a key is a table or a list of tables, whatever it is."""
-        alternatives = [part for one in self.alternatives(node) for part in self.alternatives(one.get("items") or one)]
-        return all("properties" in one or one.get("type") == "object" for one in alternatives)
+        parts = [
+            part for choice in self.alternatives(node) for part in self.alternatives(choice.get("items") or choice)
+        ]
+        return all("properties" in part or part.get("type") == "object" for part in parts)
 
 
 def is_table(value: object) -> bool:
     """Whether a value is a table, or a list of tables."""
     items = value if isinstance(value, list) and value else [value]
-    return all(isinstance(one, Mapping) for one in items)
+    return all(isinstance(item, Mapping) for item in items)
 
 
 def default_of(key: Part) -> str:

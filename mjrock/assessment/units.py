@@ -36,7 +36,7 @@ class Unit(NamedTuple):
 
     def raised(self, power: int) -> Unit:
         """The unit to a whole power."""
-        return Unit(tuple(power * one for one in self.exponents), self.factor**power, self.times**power)  # type: ignore[arg-type]
+        return Unit(tuple(power * exponent for exponent in self.exponents), self.factor**power, self.times**power)  # type: ignore[arg-type]
 
 
 PLAIN = Unit((0, 0, 0, 0))
@@ -73,7 +73,7 @@ def unit_named(text: str) -> Unit | None:
     if len(under) > 1 or (under and not under[0].strip()):
         return None
     total = PLAIN
-    for part, sign in [*((one, 1) for one in over.split()), *((one, -1) for each in under for one in each.split())]:
+    for part, sign in [*((word, 1) for word in over.split()), *((word, -1) for term in under for word in term.split())]:
         match = PART.fullmatch(part)
         if match is None or match[1] not in UNITS:
             if not (part == "1" and sign > 0):
@@ -102,17 +102,17 @@ def value_in(text: str, unit: str) -> float:
     """
     match = TEXT.fullmatch(text)
     declared_unit = unit_named(unit) or PLAIN
-    kind = Message("a number in {unit}", unit=unit) if unit else Message("a number")
+    due = Message("a number in {unit}", unit=unit) if unit else Message("a number")
     example = examples_of(unit) if unit else "0.5"
     if match is None:
-        raise UnitError(Message("is not {kind}, such as {example}", kind=kind, example=example))
+        raise UnitError(Message("is not {kind}, such as {example}", kind=due, example=example))
     number = Fraction(match[1])
     if not match[2]:
         plain = unit or Message("a plain number")
         raise UnitError(Message("has no unit; write the number without quotes for {plain}", plain=plain))
     if COMMA.match(match[2]):
         raise UnitError(Message("has a comma; the decimal mark is a point, as in 0.5"))
-    values = {"unit": match[2], "kind": kind, "example": example}
+    values = {"unit": match[2], "kind": due, "example": example}
     given_unit = unit_named(match[2])
     if given_unit is None:
         unknown = "has the unit {unit!r}, which is not known; {kind} is due, such as {example}"

@@ -194,7 +194,7 @@ def bodies_of(moving: BodyMotion, velocity: Array) -> list[Body]:
         body, support = case.body_of(solid.block), case.support_of(solid.block)
         pose, rate = np.tile(np.eye(1, 7, 3), (len(t), 1)), np.zeros((len(t), 6))
         if solid.block is not None:
-            pose = _in_space(moving.pose_of(solid.block))
+            pose = _poses_in_space(moving.pose_of(solid.block))
         if body is not None:
             rate = velocity[:, body]
         elif support is not None:
@@ -216,7 +216,7 @@ def bodies_of(moving: BodyMotion, velocity: Array) -> list[Body]:
     return bodies
 
 
-def _in_space(pose: Array) -> Array:
+def _poses_in_space(pose: Array) -> Array:
     """Poses of shape (n, 7), of those of the plane too."""
     if pose.shape[1] == SPACE.nq:
         return pose

@@ -71,9 +71,9 @@ class Comparison(NotebookPicture):
     def __repr__(self) -> str:
         pair = self.restitution[0] if len(self.restitution) else (math.nan, math.nan)
         shown = ["none" if math.isnan(value) else f"{value:.4g}" for value in pair]
-        which = "impact 1 under ground motion" if self.case.shaken else "rebound 1"
+        impact = "impact 1 under ground motion" if self.case.shaken else "rebound 1"
         return (
-            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of {which} {shown[1]} for "
+            f"<Comparison of {self.candidate.solver} with {self.reference.solver}: |e| of {impact} {shown[1]} for "
             f"{shown[0]}, RMS of theta/alpha {self.rms:.3g}>"
         )
 
@@ -83,12 +83,12 @@ class Comparison(NotebookPicture):
         return self.reference.of_wall[0]
 
     @property
-    def _both(self) -> tuple[Response, Response]:
+    def _responses(self) -> tuple[Response, Response]:
         return self.reference, self.candidate
 
     @property
     def _labels(self) -> tuple[str, str]:
-        reference, candidate = (response.solver for response in self._both)
+        reference, candidate = (response.solver for response in self._responses)
         return (reference, candidate) if reference != candidate else (f"{reference} 1", f"{candidate} 2")
 
     @cached_property
@@ -98,8 +98,8 @@ class Comparison(NotebookPicture):
         if not case.shaken:
             return None
         outer = case.restoring.outer
-        least = COMPARED_FROM * float(outer.energy(max(outer.alpha, 0.0)))
-        return paired(self.reference.impacts, self.candidate.impacts, SAME_IMPACT / case.wall.p, least)
+        least_energy = COMPARED_FROM * float(outer.energy(max(outer.alpha, 0.0)))
+        return paired(self.reference.impacts, self.candidate.impacts, SAME_IMPACT / case.wall.p, least_energy)
 
     def _values(self, left: Array | list[float], right: Array | list[float]) -> Array:
         every = np.repeat(np.arange(max(len(left), len(right)))[:, None], 2, axis=1)
@@ -108,12 +108,12 @@ class Comparison(NotebookPicture):
     @property
     def restitution(self) -> Array:
         """|e| per rebound, reference and candidate [-], shape (n, 2)."""
-        return self._values(*(r.restitution for r in self._both))
+        return self._values(*(r.restitution for r in self._responses))
 
     @property
     def energy_loss(self) -> Array:
         """Energy lost per impact, reference and candidate [J], shape (n, 2)."""
-        return self._values(*([i.energy_loss for i in r.impacts] for r in self._both))
+        return self._values(*([i.energy_loss for i in r.impacts] for r in self._responses))
 
     @property
     def energy_share(self) -> Array:
@@ -124,7 +124,7 @@ class Comparison(NotebookPicture):
     @property
     def impact_times(self) -> Array:
         """Times of the impacts [s], shape (n, 2)."""
-        return self._values(*([i.t for i in r.impacts] for r in self._both))
+        return self._values(*([i.t for i in r.impacts] for r in self._responses))
 
     @property
     def rebound_peaks(self) -> Array:
@@ -134,9 +134,9 @@ class Comparison(NotebookPicture):
         """
         alpha = self.case.wall.alpha
         if self.pairs is not None:
-            return self._values(*(_largest_after(r) / alpha for r in self._both))
+            return self._values(*(_largest_after(r) / alpha for r in self._responses))
         skip = 0 if self.case.released_outwards else 1
-        return self._values(*(r.peaks[skip:] / alpha for r in self._both))
+        return self._values(*(r.peaks[skip:] / alpha for r in self._responses))
 
     @property
     def first_rebound_peak(self) -> tuple[float, float]:
@@ -150,7 +150,7 @@ class Comparison(NotebookPicture):
         return self.reference.outcome, self.candidate.outcome
 
     @property
-    def _measured(self) -> Array:
+    def _measures(self) -> Array:
         """The measures of all impacts, reference and candidate, shape (n, measures, 2), NaN where one has none."""
         columns = [getattr(self, measure.attribute) for measure in MEASURES_OF_IMPACTS]
         measured = np.full((max(map(len, columns)), len(columns), 2), np.nan)
@@ -161,8 +161,8 @@ class Comparison(NotebookPicture):
     def rows(self) -> list[dict[str, float]]:
         """One row an impact, for a table or a CSV file; names carry their units."""
         labels = self._labels
-        names = [f"{each.name}, {solver} [{each.unit}]" for each in MEASURES_OF_IMPACTS for solver in labels]
-        values = self._measured.reshape(-1, len(names)).tolist()
+        names = [f"{measure.name}, {solver} [{measure.unit}]" for measure in MEASURES_OF_IMPACTS for solver in labels]
+        values = self._measures.reshape(-1, len(names)).tolist()
         return [{"impact": i + 1} | dict(zip(names, row, strict=True)) for i, row in enumerate(values)]
 
     def csv(self) -> str:
@@ -179,11 +179,11 @@ class Comparison(NotebookPicture):
             f"Of each impact: {labels[0]}, then {labels[1]}",
             "impact |" + "|".join(f"{heading:^17}" for heading in HEADINGS),
         ]
-        for i, row in enumerate(self._measured[: max(0, most)].tolist()):
+        for i, row in enumerate(self._measures[: max(0, most)].tolist()):
             cells = (
-                " ".join(f"{'-':>{one.form[0]}}" if math.isnan(value) else f"{value:{one.form}}" for value in both)
-                for one, both in zip(MEASURES_OF_IMPACTS, row, strict=True)
-                if one.form is not None
+                " ".join(f"{'-':>{entry.form[0]}}" if math.isnan(value) else f"{value:{entry.form}}" for value in pair)
+                for entry, pair in zip(MEASURES_OF_IMPACTS, row, strict=True)
+                if entry.form is not None
             )
             lines.append(f"{i + 1:>6} | " + " | ".join(cells))
         if self.pairs is not None:
@@ -193,7 +193,7 @@ class Comparison(NotebookPicture):
         if self.case.shaken:
             lines.append("Under ground motion the restitution is that of single impacts, and none of free rocking.")
         lines.append(f"RMS difference of theta/alpha: {self.rms:.5f}")
-        for label, response in zip(labels, self._both, strict=True):
+        for label, response in zip(labels, self._responses, strict=True):
             lines.append(f"{label}: {response.message}")
         return "\n".join(part for line in lines for part in textwrap.wrap(line, WIDEST_LINE))
 
@@ -237,7 +237,7 @@ def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least
     which the wall has less energy than `least` [J]. All are in the order of their times.
     """
     counted = [[i for i, impact in enumerate(side) if impact.energy_before >= least] for side in (left, right)]
-    a, b = (np.array([side[i].t for i in own]) for side, own in zip((left, right), counted, strict=True))
+    a, b = (np.array([side[i].t for i in indices]) for side, indices in zip((left, right), counted, strict=True))
     pairs, unpaired = [], set(range(len(b)))
     for i, t in enumerate(a):
         j = int(np.abs(b - t).argmin()) if len(b) else -1
@@ -253,5 +253,5 @@ def paired(left: Sequence[Impact], right: Sequence[Impact], within: float, least
 def of_impacts(numbers: Integers, left: Sequence[float] | Array, right: Sequence[float] | Array) -> Array:
     """Values of the impacts of each pair, NaN where there is none, shape (n, 2)."""
     sides = zip(numbers.T, (left, right), strict=True)
-    columns = [[values[i] if 0 <= i < len(values) else np.nan for i in own] for own, values in sides]
+    columns = [[values[i] if 0 <= i < len(values) else np.nan for i in indices] for indices, values in sides]
     return np.array(columns, dtype=float).T.reshape(-1, 2)

@@ -65,11 +65,10 @@ class Standstill(NamedTuple):
 
     def described(self, subject: str) -> str:
         """How far the subject has moved, and its kinetic energy, in words."""
-        far = f"{1e3 * self.moved:.2g} mm" if self.moved > LEAST_MOTION else f"less than {1e3 * LEAST_MOTION:g} mm"
+        distance = f"{1e3 * self.moved:.2g} mm" if self.moved > LEAST_MOTION else f"less than {1e3 * LEAST_MOTION:g} mm"
         kinetic = f"{self.kinetic:.2g} times" if self.kinetic > 0.01 else "less than 1 % of"
-        return (
-            f"In the last second {subject} moved by {far}, and it has {kinetic} the kinetic energy that opens a joint."
-        )
+        motion = f"In the last second {subject} moved by {distance}"
+        return f"{motion}, and it has {kinetic} the kinetic energy that opens a joint."
 
 
 def ending(

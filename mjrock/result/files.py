@@ -81,7 +81,7 @@ def linear(colour: Array) -> list[float]:
 
 def comments_text(record: Mapping[str, Json]) -> str:
     """A record as comments of a table, a line each. A text stands as it is, and all else as JSON."""
-    texts = {name: one if isinstance(one, str) else json.dumps(one) for name, one in record.items()}
+    texts = {name: value if isinstance(value, str) else json.dumps(value) for name, value in record.items()}
     return "".join(f"# {name}: {' '.join(text.split())}\n" for name, text in texts.items())
 
 
@@ -109,9 +109,9 @@ def write_gltf(path: str | Path, t: Array, bodies: list[Body], record: Json) -> 
         start = {"translation": places[0].tolist(), "rotation": turned[0].tolist()}
         nodes.append({"name": body.name, "mesh": node} | start)
         moves = (("translation", places, "VEC3"), ("rotation", turned, "VEC4")) if body.moves else ()
-        for property_moved, values, kind in moves:
+        for property_moved, values, vector_type in moves:
             channels.append({"sampler": len(samplers), "target": {"node": node, "path": property_moved}})
-            samplers.append({"input": times, "output": numbers.add(values, kind), "interpolation": "LINEAR"})
+            samplers.append({"input": times, "output": numbers.add(values, vector_type), "interpolation": "LINEAR"})
     text = {
         "asset": {"version": "2.0", "generator": "mjrock", "extras": record},
         "scene": 0,
@@ -162,10 +162,10 @@ def texts_of_bodies(bodies: Sequence[Body], record: Json) -> list[str]:
     of_face["colour"] = np.rint(255 * np.array([body.colour for body in bodies])).astype(np.uint8)
     cells = {name: np.repeat(values, sizes, axis=0) for name, values in of_face.items()}
     places = np.concatenate([body.placed(body.corners) for body in bodies], axis=1)
-    rest = np.concatenate([body.rest + body.corners for body in bodies])
+    at_rest = np.concatenate([body.rest + body.corners for body in bodies])
     rates = np.concatenate([body.rate(body.corners) for body in bodies], axis=1)
     return [
-        _grid(at, faces, VTK_POLYGON, {"displacement": at - rest, "velocity": rate}, cells, {} if i else record)
+        _grid(at, faces, VTK_POLYGON, {"displacement": at - at_rest, "velocity": rate}, cells, {} if i else record)
         for i, (at, rate) in enumerate(zip(places, rates, strict=True))
     ]
 
@@ -208,11 +208,11 @@ def _grid(
 
 def _array(name: str, values: Array | NDArray[np.uint8], tuples: int = 0) -> str:
     """The element of an array. One of neither points nor cells has its number of tuples."""
-    kind = {"f": "Float64", "i": "Int64", "u": "UInt8"}[values.dtype.kind]
+    number_type = {"f": "Float64", "i": "Int64", "u": "UInt8"}[values.dtype.kind]
     wide = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
     wide += f' NumberOfTuples="{tuples}"' if tuples else ""
     text = " ".join(f"{value:.12g}" for value in values.ravel().tolist())
-    return f'<DataArray type="{kind}" Name={quoted(name)}{wide} format="ascii">\n{text}\n</DataArray>'
+    return f'<DataArray type="{number_type}" Name={quoted(name)}{wide} format="ascii">\n{text}\n</DataArray>'
 
 
 def _file(kind: str, text: str) -> str:

@@ -68,8 +68,8 @@ class Forces:
     @property
     def largest_reaction(self) -> float:
         """The largest reaction of a fixed block, or of the base or the side of a wall, among the samples [N]."""
-        own = [np.linalg.norm(force, axis=1).max() for name, force in self.reactions.items() if name != ANCHORS]
-        return float(max(own))
+        largest = [np.linalg.norm(force, axis=1).max() for name, force in self.reactions.items() if name != ANCHORS]
+        return float(max(largest))
 
     def columns(self) -> dict[str, Array]:
         """All of them as columns of a table, with their units, shape (n,) each."""
@@ -86,12 +86,12 @@ class Forces:
         for i, name in enumerate(self.joints):
             columns[f"normal force of {name} [N]"] = self.normal[:, i]
             labels = ("",) if d == 2 else (" 1", " 2")
-            for what, values, unit in (("shear", self.shear, "N"), ("eccentricity", self.eccentricity, "m")):
+            for quantity, values, unit in (("shear", self.shear, "N"), ("eccentricity", self.eccentricity, "m")):
                 along = values[:, i].reshape(len(values), -1).T
-                columns |= {f"{what}{k} of {name} [{unit}]": row for k, row in zip(labels, along, strict=True)}
+                columns |= {f"{quantity}{k} of {name} [{unit}]": row for k, row in zip(labels, along, strict=True)}
             turning = self.moment[:, i].reshape(len(self.moment), -1).T
             about = ("moment",) if d == 2 else ("torsion", *(f"moment{k}" for k in labels))
-            columns |= {f"{what} of {name} [N m]": row for what, row in zip(about, turning, strict=True)}
+            columns |= {f"{component} of {name} [N m]": row for component, row in zip(about, turning, strict=True)}
         return columns | {f"pull of {name} [N]": pulled for name, pulled in self.links.items()}
 
     def __repr__(self) -> str:

@@ -83,7 +83,7 @@ def fallen_blocks(masonry: Masonry, t: Array, parted: Flags, tilt: Array, drop: 
         if not down.any():
             break
         if n == len(t) - 1 or (parted[n] != parted[n + 1]).any():
-            loose = _cut_off(masonry, pairs[~parted[n]])
+            loose = _are_cut_off(masonry, pairs[~parted[n]])
         down &= toppled[n] | loose
         since[down] = t[n]
     return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
@@ -102,7 +102,7 @@ def left_joints(masonry: Masonry, t: Array, off: Flags) -> dict[str, float]:
     pairs, off = _pairs(masonry), np.logical_or.accumulate(off, axis=0)
     since = np.full(len(masonry.free), np.inf)
     for n in np.flatnonzero(np.diff(off.sum(axis=1), prepend=0)):
-        loose = _cut_off(masonry, pairs[~off[n]])
+        loose = _are_cut_off(masonry, pairs[~off[n]])
         since[loose] = np.minimum(since[loose], t[n])
     return in_order({masonry.names[block]: when for block, when in zip(masonry.free, since.tolist(), strict=True)})
 
@@ -134,8 +134,8 @@ def sunk_ground(masonry: Masonry, supports: tuple[Support, ...], t: Array) -> Ar
     fixed = [i for i, block in enumerate(masonry.blocks) if block.fixed]
     nearest = nearest_roots(_pairs(masonry), len(masonry.blocks), fixed)
     sunk = {masonry.names.index(support.block): -support.at(t)[:, -1] for support in supports}
-    still = np.zeros(len(t))
-    return np.stack([sunk.get(ground, still) for ground in nearest[list(masonry.free)].tolist()], axis=1)
+    unsunk = np.zeros(len(t))
+    return np.stack([sunk.get(ground, unsunk) for ground in nearest[list(masonry.free)].tolist()], axis=1)
 
 
 def _pairs(masonry: Masonry) -> Integers:
@@ -143,7 +143,7 @@ def _pairs(masonry: Masonry) -> Integers:
     return np.array([(joint.below, joint.above) for joint in masonry.joints])
 
 
-def _cut_off(masonry: Masonry, pairs: Integers) -> Flags:
+def _are_cut_off(masonry: Masonry, pairs: Integers) -> Flags:
     """Whether no chain of joints connects each free block with a fixed one, shape (bodies,); `pairs` of joints."""
     labels = connected_parts(pairs, len(masonry.blocks))
     fixed = {labels[i] for i, block in enumerate(masonry.blocks) if block.fixed}
@@ -190,11 +190,11 @@ def joint_motion(case: MasonryCase, scene: Scene, t: Array, pose: Array) -> Join
     off, parted = np.zeros((2, len(pose), count), dtype=bool)
     size = max(1, GAPS_AT_ONCE // max(1, count))
     for first in range(0, len(pose), size):
-        some = slice(first, first + size)
-        gaps = _joint_gaps(scene, points, pose[some], shift[some])
-        far, off[some] = _slid_off(case.rest_geometry, gaps.slid)
-        parted[some] = (far > widths) | (gaps.nearest > PARTED * widths)
-        opening, sliding = np.maximum(opening, gaps.opened.max(axis=0)), np.maximum(sliding, far.max(axis=0))
+        batch = slice(first, first + size)
+        gaps = _joint_gaps(scene, points, pose[batch], shift[batch])
+        distance, off[batch] = _slid_off(case.rest_geometry, gaps.slid)
+        parted[batch] = (distance > widths) | (gaps.nearest > PARTED * widths)
+        opening, sliding = np.maximum(opening, gaps.opened.max(axis=0)), np.maximum(sliding, distance.max(axis=0))
         deepest = max(deepest, -float(gaps.nearest.min()))
     return JointRecord(opening, sliding, deepest, off, parted)
 
@@ -219,12 +219,12 @@ def _slid_off(geometry: MasonryRestGeometry, slid: Array) -> tuple[Array, Flags]
         along = np.einsum("sji,ji->sj", slid, np.array([joint.along for joint in joints]))
         back, forth = np.array([joint.travel for joint in joints]).T
         return np.abs(along), (along > forth) | (along < -back)
-    widths, far = np.array([joint.width for joint in geometry.joints]), np.linalg.norm(slid, axis=2)
-    off = far >= widths
+    widths, distance = np.array([joint.width for joint in geometry.joints]), np.linalg.norm(slid, axis=2)
+    off = distance >= widths
     for j in np.flatnonzero(off.any(axis=0)):
-        ways = slid[:, j] / np.maximum(far[:, j], widths[j])[:, None]
-        off[:, j] &= far[:, j] > travels(geometry.faces[j], ways)
-    return far, off
+        ways = slid[:, j] / np.maximum(distance[:, j], widths[j])[:, None]
+        off[:, j] &= distance[:, j] > travels(geometry.faces[j], ways)
+    return distance, off
 
 
 class JointPoints(NamedTuple):
@@ -245,9 +245,9 @@ class JointPoints(NamedTuple):
         """The points of a case."""
         masonry, places, joint = case.masonry, scene.places, scene.places.joint
         frames = frames_of(scene.at_rest.ravel(), places.freedom)
-        at_rest = np.array([_along_face(places, i, meeting(places, i, frames), frames) for i in range(len(joint))])
+        at_rest = np.array([_place_on_face(places, i, meeting(places, i, frames), frames) for i in range(len(joint))])
         number = {masonry.names.index(support.block): i for i, support in enumerate(case.supports)}
-        below = np.array([number.get(each.below, -1) for each in masonry.joints])  # a block above is never fixed
+        below = np.array([number.get(joint.below, -1) for joint in masonry.joints])  # a block above is never fixed
         support = np.where(places.face_body < 0, below[joint], -1)
         return cls(at_rest, scene.sense, support)
 
@@ -271,7 +271,7 @@ def _joint_gaps(scene: Scene, points: JointPoints, pose: Array, shift: Array) ->
 
 
 @inlined
-def _along_face(places: Places, i: int, meets: Meeting, frames: Array) -> Vector:
+def _place_on_face(places: Places, i: int, meets: Meeting, frames: Array) -> Vector:
     """Position of point i along its face, from the origin of the face, in the axes of the face [m]."""
     along, face = minus(meets.offset, scaled(meets.gap, meets.normal)), places.face_body[i]
     return along if face < 0 else plus(along, inverse_rotation_change(frames, face, along))
@@ -300,7 +300,7 @@ def _write_gaps(places: Places, points: JointPoints, pose: Array, shift: Array, 
             opened[n, j] = max(opened[n, j], meets.gap)
             if meets.gap < nearest[n, j]:
                 nearest[n, j] = meets.gap
-                along = _along_face(places, i, meets, frames)
+                along = _place_on_face(places, i, meets, frames)
                 for axis in range(len(along)):
                     slid[n, j, axis] = points.sign[i] * (along[axis] - points.at_rest[i, axis])
 
@@ -331,28 +331,28 @@ def past_support(
     sampled = np.unique(np.linspace(0, len(motion.off) - 1, OVERHANG_SAMPLES).astype(int))
     for block, beds in _beds(masonry).items():
         centroid = geometry.centroids[block, :-1]
-        drawn = _beyond(centroid, np.concatenate([faces[j] for j in beds]))
-        least = max(drawn, 0.0) + LEAST_OVERHANG * masonry.blocks[block].size
-        if drawn + motion.sliding[beds].max() < least:
+        drawn = _distance_beyond(centroid, np.concatenate([faces[j] for j in beds]))
+        threshold = max(drawn, 0.0) + LEAST_OVERHANG * masonry.blocks[block].size
+        if drawn + motion.sliding[beds].max() < threshold:
             continue
         slid = slips(sampled) if slid is None else slid
-        farthest = least
+        farthest = threshold
         for offsets, off in zip(slid[:, beds, :-1], motion.off[sampled][:, beds], strict=True):
             support = [faces[j] - offset for j, offset, left in zip(beds, offsets, off, strict=True) if not left]
             if support:
-                farthest = max(farthest, _beyond(centroid, np.concatenate(support)))
-        if farthest > least:
+                farthest = max(farthest, _distance_beyond(centroid, np.concatenate(support)))
+        if farthest > threshold:
             overhangs[masonry.names[block]] = farthest - max(drawn, 0.0)
     return overhangs
 
 
 def overhang_message(past: Mapping[str, float]) -> str:
     """A sentence that names the blocks that overhang, and how far; empty where none does."""
-    far = [f"{name} by {past[name]:.3g} m" for name in sorted(past, key=past.__getitem__, reverse=True)]
+    texts = [f"{name} by {past[name]:.3g} m" for name in sorted(past, key=past.__getitem__, reverse=True)]
     return (
-        f" The weight passed the edge of what it stands on: {named(far)}. Faces have no end in MuJoCo, where such a "
+        f" The weight passed the edge of what it stands on: {named(texts)}. Faces have no end in MuJoCo, where such a "
         "block does not tip; solve_explicit follows it."
-        if far
+        if texts
         else ""
     )
 
@@ -370,7 +370,7 @@ def _beds(masonry: Masonry) -> dict[int, list[int]]:
     return {block: on for block, on in beds.items() if block not in inclined}
 
 
-def _beyond(point: Array, corners: Array) -> float:
+def _distance_beyond(point: Array, corners: Array) -> float:
     """How far a point lies outside of the hull of some corners in plan [m], negative inside."""
     if len(point) == 1:
         return float(max(corners.min() - point[0], point[0] - corners.max()))

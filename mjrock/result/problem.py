@@ -196,10 +196,10 @@ def required_start(start: object, case: AnyCase, *, remembers: bool = False) -> 
 def require_in_text(case: AnyCase) -> None:
     """Raise ValueError for a link whose law the text of a model, and so a fixed step, cannot describe."""
     for name, link in case.links.items():
-        kind: Callable[..., object] = type(link)
+        link_type: Callable[..., object] = type(link)
         for number, default in link.law._field_defaults.items():
             if number not in NUMBERS_IN_TEXT and (value := getattr(link.law, number)) != default:
-                unit = declared(kind)[number].within.unit
+                unit = declared(link_type)[number].within.unit
                 raise ValueError(
                     f"a fixed step is the text of a model, which cannot describe the law of each link, and {name} has "
                     f"{number} = {value:g} {unit}; leave timestep out, so that steps fit the motion, or leave {number} "

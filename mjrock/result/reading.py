@@ -106,7 +106,7 @@ def masonry_reading(
     if history is None:
         fallen = _fallen_from_faces(case, scene, t, motion, joints, fallen)
         past = past_support(case.rest_geometry, joints, lambda steps: slips(case, scene, t[steps], pose[steps]))
-        place = overhang_message({name: far for name, far in past.items() if name not in fallen})
+        place = overhang_message({name: distance for name, distance in past.items() if name not in fallen})
     else:
         # where blocks have moved, the energy at rest is another one
         elsewhere = history.has_left_joints or bool(case.supports) or bool(case.actuators)
@@ -140,5 +140,5 @@ def _stopped_by(scene: Scene, last: Array, end: float) -> dict[str, float]:
     freedom, first = scene.freedom, scene.at_rest
     shifted = np.hypot.reduce((last - first)[:, : freedom.translations], axis=1)
     distances = shifted + angles(last.ravel(), first.ravel(), freedom) * scene.bodies.extent
-    least = 0.5 * distances.max()
-    return {name: end for name, distance in zip(scene.bodies.names, distances, strict=True) if distance >= least}
+    threshold = 0.5 * distances.max()
+    return {name: end for name, distance in zip(scene.bodies.names, distances, strict=True) if distance >= threshold}

@@ -56,8 +56,8 @@ class End:
         return iter((self.pose, self.velocity))
 
     def __getitem__(self, part: int) -> Array:
-        both = self.pose, self.velocity
-        return both[part]
+        parts = self.pose, self.velocity
+        return parts[part]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -385,9 +385,9 @@ class Response(NotebookPicture):
         if self.in_space:
             coordinates = [*((axis, "m") for axis in "xyz"), *((f"quaternion {part}", "-") for part in "wxyz")]
         for i, body in enumerate(self.bodies):
-            of = f" of {body}" if self.rocking is None else ""
+            suffix = f" of {body}" if self.rocking is None else ""
             for j, (name, unit) in enumerate(coordinates):
-                columns[f"{name}{of} [{unit}]"] = self.pose[:, i, j]
+                columns[f"{name}{suffix} [{unit}]"] = self.pose[:, i, j]
         for name, motion in self.case.grounds.items():
             columns[f"ground {'horizontal' if name == 'motion' else name} [m/s2]"] = motion(self.t)
         columns |= {f"force of {name} [N]": force for name, force in self.actuators.items()}
@@ -441,8 +441,8 @@ class Response(NotebookPicture):
         except ImportError as error:
             raise ImportError(f"{error}; to_xarray needs it: pip install xarray") from None
         variables = {
-            name: (one.dims, one.values, {"units": one.units, "description": one.text})
-            for name, one in variables_of(self).items()
+            name: (variable.dims, variable.values, {"units": variable.units, "description": variable.text})
+            for name, variable in variables_of(self).items()
         }
         return xarray.Dataset(variables, attrs=attributes_of(self))
 
@@ -464,9 +464,9 @@ class Response(NotebookPicture):
             ValueError: for another ending, or a value outside its range.
             OSError: if the file cannot be written.
         """
-        kept = frames_at(self.t, fps)
-        bodies = bodies_of(self.moving.at(kept), self.velocity[kept])
-        return write_gltf(path, self.t[kept], bodies, record_of(self))
+        frames = frames_at(self.t, fps)
+        bodies = bodies_of(self.moving.at(frames), self.velocity[frames])
+        return write_gltf(path, self.t[frames], bodies, record_of(self))
 
     def to_vtk(self, folder: str | Path, fps: float = 25.0) -> Path:
         """Write the motion as a series of files, which ParaView opens by `blocks.pvd`.
@@ -487,13 +487,13 @@ class Response(NotebookPicture):
             ValueError: for a value outside its range.
             OSError: if a file cannot be written.
         """
-        kept = frames_at(self.t, fps)
-        moving = self.moving.at(kept)
-        t, bodies = moving.t, bodies_of(moving, self.velocity[kept])
+        frames = frames_at(self.t, fps)
+        moving = self.moving.at(frames)
+        t, bodies = moving.t, bodies_of(moving, self.velocity[frames])
         if self.kept_forces is not None:
             forces, d = self.kept_forces, 3 if self.in_space else 2
             middle, axes = moving.joints(forces.frames)
-            normal, shear = forces.normal[kept], forces.shear[kept].reshape(*middle.shape[:2], d - 1)
+            normal, shear = forces.normal[frames], forces.shear[frames].reshape(*middle.shape[:2], d - 1)
             along = np.concatenate([normal[..., None], shear], axis=-1)
             values = {"force": in_space((along[..., None] * axes).sum(axis=-2)), "normal": normal}
             if self.joints is not None:
@@ -539,9 +539,9 @@ class Response(NotebookPicture):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Response):
             return NotImplemented
-        same = ("case", "solver", "outcome", "rocking", "joints")
+        names = ("case", "solver", "outcome", "rocking", "joints")
         samples = ("t", "pose", "velocity", "energy")
-        return all(getattr(self, name) == getattr(other, name) for name in same) and all(
+        return all(getattr(self, name) == getattr(other, name) for name in names) and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in samples
         )
 
@@ -593,8 +593,8 @@ def load(path: str | Path, laws: Iterable[type] = ()) -> Response:
     """
     if isinstance(laws, type):
         raise TypeError(f"laws = {shown(laws)} is one class; give a list of them, laws=[{laws.__name__}]")
-    for law in (given := tuple(laws)):
+    for law in (classes := tuple(laws)):
         if not isinstance(law, type):
             raise TypeError(f"laws has {shown(law)}, which is not a class; give its class")
-    answer: Response = read_answer(path, given)
+    answer: Response = read_answer(path, classes)
     return answer

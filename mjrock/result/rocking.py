@@ -162,8 +162,8 @@ def rocking_history(case: Case, motion: RotationHistory, uplift: Uplift, *, rele
     if prepended:
         times, sizes = np.append(motion.t[0], times), np.append(case.release_peak, sizes)
     if case.shaken:
-        return RockingHistory(times, sizes, _between_passes(case, motion, uplift))
-    return RockingHistory(times, sizes, _between_peaks(case, motion, times, sizes, residual, uplift.rotation))
+        return RockingHistory(times, sizes, _impacts_between_passes(case, motion, uplift))
+    return RockingHistory(times, sizes, _impacts_between_peaks(case, motion, times, sizes, residual, uplift.rotation))
 
 
 def _maxima(motion: RotationHistory, *, one_sided: bool) -> tuple[Array, Array]:
@@ -176,7 +176,7 @@ def _maxima(motion: RotationHistory, *, one_sided: bool) -> tuple[Array, Array]:
     return t[turns] + lead, np.abs(theta[turns]) + 0.5 * lead * outward[turns]
 
 
-def _between_peaks(
+def _impacts_between_peaks(
     case: Case, motion: RotationHistory, times: Array, sizes: Array, residual: Array, threshold: float
 ) -> tuple[Impact, ...]:
     """One impact between each pair of peaks, at the time when the wall passes theta = 0 or comes closest to it.
@@ -229,14 +229,14 @@ def _energy_after_last(case: Case, motion: RotationHistory, residual: Array, thr
     return math.nan
 
 
-def _between_passes(case: Case, motion: RotationHistory, uplift: Uplift) -> tuple[Impact, ...]:
+def _impacts_between_passes(case: Case, motion: RotationHistory, uplift: Uplift) -> tuple[Impact, ...]:
     """One impact for each time that the rotation falls below the uplift rotation.
 
     The energy before it is that of the rigid wall as it falls below that rotation. The energy after it is that of the
     rigid wall as it exceeds it again, to either side. A wall whose energy drops below that of uplift in between has
     come to rest. The energy after the impact is then that lowest energy.
     """
-    wall, (threshold, least), (t, theta, omega, energy) = case.wall, uplift, motion
+    wall, (threshold, least_energy), (t, theta, omega, energy) = case.wall, uplift, motion
     outside = np.where(np.abs(theta) > threshold, np.sign(theta), 0.0)
     if case.side_stop:
         outside = np.maximum(outside, 0.0)
@@ -252,7 +252,7 @@ def _between_passes(case: Case, motion: RotationHistory, uplift: Uplift) -> tupl
         behind = np.flatnonzero(s * theta[i : j + 2] <= 0)
         crossed = i + int(behind[0]) if behind.size else j
         before = float(case.restoring.energy(s * threshold)) + 0.5 * wall.inertia_about(s) * float(omega[i]) ** 2
-        if low < least or not leaves.size:
+        if low < least_energy or not leaves.size:
             after, side = max(0.0, low), s
         else:
             side = outside[j + 1]

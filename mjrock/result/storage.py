@@ -72,9 +72,9 @@ def write_answer(answer: Any, path: str | Path) -> Path:
     variables, arrays = variables_of(answer), dict[str, StoredArray]()
     places = {id(variable.values): name for name, variable in variables.items()}
 
-    def keep(at: str, values: Any, of: type, field: str) -> str:
+    def keep(at: str, values: Any, owner: type, field: str) -> str:
         if id(values) not in places:
-            unit, text = unit_and_text(of, field)
+            unit, text = unit_and_text(owner, field)
             name = f"{GROUP}/arrays/{at.replace('/', '_')}"
             arrays[name] = StoredArray(values, unit or ("SI" if values.dtype.names else "-"), f"{at}: {text or MEMORY}")
             places[id(values)] = name
@@ -91,7 +91,7 @@ def write_answer(answer: Any, path: str | Path) -> Path:
     with replacing(path) as partial:
         partial.write_bytes(image)
     if writer.lost:
-        lost = named([f"{at} ({what})" for at, what in writer.lost.items()])
+        lost = named([f"{at} ({description})" for at, description in writer.lost.items()])
         warn_of(f"{path} does not hold {lost}; all else is kept")
     return path
 
@@ -118,7 +118,7 @@ def _write_parts(file: File, arrays: Mapping[str, StoredArray], texts: Tree) -> 
             dataset.dims[axis].label = ("row", "column")[axis] if axis < 2 else f"axis_{axis}"
     for name, tree in texts.items():
         lines = json.dumps(tree, indent=1, allow_nan=False)
-        text = NUMBERS_IN_JSON.sub(lambda found: f"[{' '.join(found[1].split())}]", lines)
+        text = NUMBERS_IN_JSON.sub(lambda match: f"[{' '.join(match[1].split())}]", lines)
         _dataset(file, f"{GROUP}/{name}", text, "-", f"{name} of the response as JSON")
     names: list[str] = []
     file.visit(names.append)

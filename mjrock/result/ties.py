@@ -116,7 +116,7 @@ def link_ends(case: AnyCase, link: Anchored) -> tuple[LinkEnd, LinkEnd]:
 def link_vector(moving: BodyMotion, tie: Anchored) -> Array:
     """Vector from the anchor of a link to its other end in a motion [m], shape (n, d)."""
     end, anchor = link_ends(moving.case, tie)
-    moved, anchor_moved = (moving.displaced(each.block, each.point[None])[:, 0] for each in (end, anchor))
+    moved, anchor_moved = (moving.displaced(link_end.block, link_end.point[None])[:, 0] for link_end in (end, anchor))
     return np.asarray(end.point - anchor.point + moved - anchor_moved)
 
 

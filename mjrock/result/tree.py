@@ -52,7 +52,7 @@ class NotKept:
 
     what: str
 
-    def __call__(self, *given: object) -> Any:
+    def __call__(self, *arguments: object) -> Any:
         """Refuse.
 
         Raises:
@@ -70,7 +70,7 @@ def fields_of(kind: type) -> tuple[str, ...]:
     """Names of the fields of a dataclass or a NamedTuple."""
     if is_named_tuple(kind):
         return tuple(kind._fields)  # type: ignore[attr-defined]
-    return tuple(each.name for each in dataclasses.fields(kind))
+    return tuple(entry.name for entry in dataclasses.fields(kind))
 
 
 def name_of(kind: type) -> str:
@@ -118,7 +118,7 @@ class Writer:
         self._known: dict[int, str] = {}
         self._held: list[object] = []  # an identity is that of one object only while it lives
 
-    def tree(self, value: object, path: str, of: type = object, field: str = "") -> Tree:
+    def tree(self, value: object, path: str, owner: type = object, field: str = "") -> Tree:
         """The tree of a value at a path, such as "case.motion", which is a field of a class."""
         if isinstance(value, np.generic):
             return {"scalar": value.dtype.str, "value": self.tree(value.item(), path)}
@@ -129,59 +129,59 @@ class Writer:
         if isinstance(value, enum.Enum):
             return {"class": name_of(type(value)), "member": value.name}
         if isinstance(value, dict | list | set | frozenset) or type(value) is tuple:
-            return self._collected(value, path, of, field)
+            return self._collected(value, path, owner, field)
         if isinstance(value, Mapping):
-            return self._collected(dict(value), path, of, field)
+            return self._collected(dict(value), path, owner, field)
         if id(value) in self._known:
             return {"same": self._known[id(value)]}
         self._known[id(value)] = path
         self._held.append(value)
         if isinstance(value, np.ndarray) and not value.dtype.hasobject:
-            return self._of_array(value, path, of, field)
+            return self._array_tree(value, path, owner, field)
         is_object = dataclasses.is_dataclass(value) and not isinstance(value, type)
         if is_object or is_named_tuple(type(value)):
-            return self._of_object(value, path)
-        return self._lose(value, path)
+            return self._object_tree(value, path)
+        return self._record_loss(value, path)
 
-    def _collected(self, value: Collection[object], path: str, of: type, field: str) -> Tree:
+    def _collected(self, value: Collection[object], path: str, owner: type, field: str) -> Tree:
         """The tree of a tuple, a list, a set or a dictionary."""
         if isinstance(value, dict):
             if all(type(name) is str for name in value):
-                return {"mapping": {k: self.tree(one, f"{path}[{k!r}]", of, field) for k, one in value.items()}}
+                return {"mapping": {k: self.tree(item, f"{path}[{k!r}]", owner, field) for k, item in value.items()}}
             pairs = enumerate(value.items())
             return {"pairs": [[self.tree(part, f"{path}.{i}.{j}") for j, part in enumerate(pair)] for i, pair in pairs]}
         ordered = sorted(value, key=repr) if isinstance(value, set | frozenset) else value
-        items = [self.tree(one, f"{path}.{i}", of, field) for i, one in enumerate(ordered)]
+        items = [self.tree(item, f"{path}.{i}", owner, field) for i, item in enumerate(ordered)]
         return items if isinstance(value, tuple) else {type(value).__name__: items}
 
-    def _of_array(self, value: NDArray[np.generic], path: str, of: type, field: str) -> Tree:
+    def _array_tree(self, value: NDArray[np.generic], path: str, owner: type, field: str) -> Tree:
         """The tree of an array: its numbers, or its name among those that are kept beside the tree."""
         layout: dict[str, Tree] = {"rows": True} if value.dtype.type is np.record else {}
         layout |= {"fixed": True} if not value.flags.writeable else {}
         layout |= {"order": "F"} if value.flags.fnc else {}
         plain = value.dtype.names is None and value.size <= INLINE and not self._has_place(value)
         if self._keep is None or plain or value.dtype.kind == "U":
-            numbers = [self.tree(one, path) for one in value.ravel().tolist()]
+            numbers = [self.tree(number, path) for number in value.ravel().tolist()]
             return {"values": numbers, "shape": list(value.shape), "type": value.dtype.str} | layout
-        return {"array": self._keep(path, value, of, field), **layout}
+        return {"array": self._keep(path, value, owner, field), **layout}
 
-    def _of_object(self, value: object, path: str) -> Tree:
+    def _object_tree(self, value: object, path: str) -> Tree:
         """The tree of an object by its fields. One that may have functions has a method that puts values there."""
         kind, plain = type(value), getattr(value, "without_functions", None)
         stored = value if plain is None else plain()
         parts = {name: self.tree(getattr(stored, name), f"{path}.{name}", kind, name) for name in fields_of(kind)}
         if not is_named_tuple(kind):
             members = (pair for base in kind.__mro__ for pair in vars(base).items())
-            cached = {name for name, one in members if isinstance(one, cached_property)}
+            cached = {name for name, member in members if isinstance(member, cached_property)}
             for name in sorted(vars(value).keys() - parts.keys() - cached):
-                self._lose(getattr(value, name), f"{path}.{name}")
+                self._record_loss(getattr(value, name), f"{path}.{name}")
         formula = {"formula": text} if (text := getattr(kind, "formula", "")) else {}  # of a law of the user
         return {"class": name_of(kind)} | formula | parts
 
-    def _lose(self, value: object, path: str) -> Tree:
-        what = f"{type(value).__name__} {getattr(value, '__qualname__', '') or spelt(value)[:60]}"
-        self.lost[path] = what
-        return {"class": name_of(NotKept), "what": what}
+    def _record_loss(self, value: object, path: str) -> Tree:
+        description = f"{type(value).__name__} {getattr(value, '__qualname__', '') or spelt(value)[:60]}"
+        self.lost[path] = description
+        return {"class": name_of(NotKept), "what": description}
 
 
 class Reader:
@@ -189,11 +189,11 @@ class Reader:
 
     Args:
         arrays: the arrays by their names.
-        own: classes from outside mjrock that may be made, such as laws of joints of a user.
+        laws: classes from outside mjrock that may be made, such as laws of joints of a user.
     """
 
-    def __init__(self, arrays: Mapping[str, Any], own: Iterable[type] = ()) -> None:
-        self._arrays, self._own = arrays, {kind.__name__: kind for kind in own}
+    def __init__(self, arrays: Mapping[str, Any], laws: Iterable[type] = ()) -> None:
+        self._arrays, self._own = arrays, {kind.__name__: kind for kind in laws}
         self._known: dict[str, object] = {}
 
     def value(self, tree: Tree, path: str) -> Any:
@@ -205,13 +205,13 @@ class Reader:
         if isinstance(tree, float) or type(tree) in SINGLE:
             return tree
         if isinstance(tree, list):
-            return tuple(self.value(one, f"{path}.{i}") for i, one in enumerate(tree))
+            return tuple(self.value(item, f"{path}.{i}") for i, item in enumerate(tree))
         if not isinstance(tree, dict):
             raise UnreadableError(f"{path} is {shown(tree)}")
         if "class" in tree:
             return self._object(tree, path)
-        for kind, read in self._readers.items():
-            if kind in tree:
+        for key, read in self._readers.items():
+            if key in tree:
                 return read(tree, path)
         raise UnreadableError(f"{path} is of no kind that is known: {', '.join(tree)}")
 
@@ -221,24 +221,24 @@ class Reader:
             return self.value(next(iter(tree.values())), path)
 
         return {
-            "array": self._of_array,
-            "values": self._of_array,
-            "same": lambda tree, path: self._same(tree["same"], path),
+            "array": self._array,
+            "values": self._array,
+            "same": lambda tree, path: self._shared_value(tree["same"], path),
             "number": lambda tree, path: float(tree["number"]),
             "scalar": lambda tree, path: np.dtype(tree["scalar"]).type(self.value(tree["value"], path)),
-            "mapping": lambda tree, path: {k: self.value(one, f"{path}[{k!r}]") for k, one in tree["mapping"].items()},
+            "mapping": lambda tree, path: {k: self.value(v, f"{path}[{k!r}]") for k, v in tree["mapping"].items()},
             "pairs": lambda tree, path: dict(self.value(tree["pairs"], path)),
             "list": lambda tree, path: list(items(tree, path)),
             "set": lambda tree, path: set(items(tree, path)),
             "frozenset": lambda tree, path: frozenset(items(tree, path)),
         }
 
-    def _same(self, known: str, path: str) -> Any:
+    def _shared_value(self, known: str, path: str) -> Any:
         if known not in self._known:
             raise UnreadableError(f"{path} is the same as {known}, which is not there")
         return self._known[known]
 
-    def _of_array(self, tree: dict[str, Tree], path: str) -> NDArray[np.generic]:
+    def _array(self, tree: dict[str, Tree], path: str) -> NDArray[np.generic]:
         if "values" in tree:
             values = np.array(self.value(tree["values"], path), dtype=tree["type"]).reshape(tree["shape"])
         elif tree["array"] not in self._arrays:
@@ -259,27 +259,27 @@ class Reader:
             if tree.get("member") not in kind.__members__:
                 raise UnreadableError(f"{path} is {tree.get('member')!r}, which {tree['class']} does not know")
             return kind[tree["member"]]
-        given, known = tree.keys() - {"class", "formula"}, fields_of(kind)
+        names, known = tree.keys() - {"class", "formula"}, fields_of(kind)
         if tree.get("formula", "") != getattr(kind, "formula", tree.get("formula", "")):
             warn_of(
                 f"{path} is of the class {tree['class']}, whose methods have changed since the file was written, or "
                 "are compiled by another Python: a run that goes on from it may be another"
             )
         defaults = _defaults_of(kind)
-        other = [*sorted(given - set(known)), *(name for name in known if name not in given and name not in defaults)]
-        if other:
+        unlike = [*sorted(names - set(known)), *(name for name in known if name not in names and name not in defaults)]
+        if unlike:
             message = f"{path} is of the class {tree['class']}, which has other fields in this version of mjrock"
-            raise UnreadableError(f"{message}: {', '.join(other)}")
+            raise UnreadableError(f"{message}: {', '.join(unlike)}")
         at = f"{path}." if path else ""
-        values = {name: self.value(tree[name], at + name) if name in given else defaults[name]() for name in known}
+        values = {name: self.value(tree[name], at + name) if name in names else defaults[name]() for name in known}
         if is_named_tuple(kind):
-            made = kind(**values)
+            instance = kind(**values)
         else:
-            made = object.__new__(kind)
+            instance = object.__new__(kind)
             for name, value in values.items():
-                object.__setattr__(made, name, value)
-        self._known[path] = made
-        return made
+                object.__setattr__(instance, name, value)
+        self._known[path] = instance
+        return instance
 
     def _class(self, name: str, path: str) -> type:
         """The class of a name.
@@ -287,19 +287,19 @@ class Reader:
         Raises:
             UnreadableError: for one that is not known, or holds no values.
         """
-        module, _, own = name.rpartition(".")
+        module, _, class_name = name.rpartition(".")
         package, _, below = module.partition(".")
         kind: Any = None
         if not module:
             public = importlib.import_module(OWN_PACKAGE)
-            kind = getattr(public, own, None) if own in public.__all__ else None
+            kind = getattr(public, class_name, None) if class_name in public.__all__ else None
         elif package != OWN_PACKAGE:
-            if own not in self._own:
-                raise UnreadableError(f"{path} is of the class {name} of a user; give it as laws=[{own}]")
-            kind = self._own[own]
+            if class_name not in self._own:
+                raise UnreadableError(f"{path} is of the class {name} of a user; give it as laws=[{class_name}]")
+            kind = self._own[class_name]
         elif below.split(".")[0] in FOLDERS:
             with contextlib.suppress(ImportError):
-                kind = getattr(importlib.import_module(module), own, None)
+                kind = getattr(importlib.import_module(module), class_name, None)
         if not isinstance(kind, type) or not (
             dataclasses.is_dataclass(kind) or is_named_tuple(kind) or issubclass(kind, enum.Enum)
         ):
@@ -310,11 +310,11 @@ class Reader:
 def _defaults_of(kind: type) -> dict[str, Callable[[], Any]]:
     """Functions that give the default of each field of a class that has one."""
     if is_named_tuple(kind):
-        return {name: partial(deepcopy, one) for name, one in kind._field_defaults.items()}  # type: ignore[attr-defined]
+        return {name: partial(deepcopy, default) for name, default in kind._field_defaults.items()}  # type: ignore[attr-defined]
     defaults: dict[str, Callable[[], Any]] = {}
-    for each in dataclasses.fields(kind):
-        if each.default_factory is not dataclasses.MISSING:
-            defaults[each.name] = each.default_factory
-        elif each.default is not dataclasses.MISSING:
-            defaults[each.name] = partial(deepcopy, each.default)
+    for entry in dataclasses.fields(kind):
+        if entry.default_factory is not dataclasses.MISSING:
+            defaults[entry.name] = entry.default_factory
+        elif entry.default is not dataclasses.MISSING:
+            defaults[entry.name] = partial(deepcopy, entry.default)
     return defaults

@@ -44,11 +44,11 @@ def variables_of(answer: Any) -> dict[str, Variable]:
     variables = dict[str, Variable]()
     for name, variable in (
         *_coordinates(answer),
-        *_of_motion(answer),
-        *_of_forces(answer.kept_forces),
-        *_of_ledger(answer.ledger),
+        *_motion_variables(answer),
+        *_force_variables(answer.kept_forces),
+        *_ledger_variables(answer.ledger),
     ):
-        variables[_unused(re.sub(r"[/\0]", "_", name), variables)] = variable
+        variables[_unused_name(re.sub(r"[/\0]", "_", name), variables)] = variable
     return variables
 
 
@@ -72,10 +72,10 @@ def record_of(answer: Any) -> dict[str, Tree]:
     return attributes_of(answer) | {name: writer.tree(getattr(answer, name), name) for name in ("case", "origin")}
 
 
-def _unused(name: str, found: Mapping[str, object]) -> str:
+def _unused_name(name: str, taken: Mapping[str, object]) -> str:
     """The name, with a number behind it where it is taken."""
     number, free = 2, name
-    while free in found:
+    while free in taken:
         free, number = f"{name}_{number}", number + 1
     return free
 
@@ -101,7 +101,7 @@ def _names(dim: str, names: Iterable[object], text: str) -> tuple[str, Variable]
     return dim, Variable((dim,), np.array([str(name) for name in names], dtype=object), "", text)
 
 
-def _of_motion(answer: Any) -> Iterator[tuple[str, Variable]]:
+def _motion_variables(answer: Any) -> Iterator[tuple[str, Variable]]:
     """Motion, impacts or joints, actuators and the ground."""
     units = ("m m m - - - -", "m/s m/s m/s rad/s rad/s rad/s") if answer.in_space else ("m m rad", "m/s m/s rad/s")
     moved = "displacement of each centroid from the undeformed contacts, and rotation from rest"
@@ -114,41 +114,41 @@ def _of_motion(answer: Any) -> Iterator[tuple[str, Variable]]:
     for name, force in answer.actuators.items():
         yield f"actuator {name}", Variable(("t",), force, "N", "force of an actuator along its direction")
     if answer.rocking is not None:
-        yield "peaks", _described(Rocking, "peaks", ("peak",), answer.rocking.peaks)
+        yield "peaks", _described_variable(Rocking, "peaks", ("peak",), answer.rocking.peaks)
         for name in Impact._fields:
             values = np.array([getattr(impact, name) for impact in answer.rocking.impacts])
-            yield f"impact_{name}", _described(Impact, name, ("impact",), values)
+            yield f"impact_{name}", _described_variable(Impact, name, ("impact",), values)
     if answer.joints is not None:
         for name in ("opening", "sliding"):
-            yield name, _described(JointMotion, name, ("joint",), getattr(answer.joints, name))
+            yield name, _described_variable(JointMotion, name, ("joint",), getattr(answer.joints, name))
 
 
-def _of_forces(forces: Forces | None) -> Iterator[tuple[str, Variable]]:
+def _force_variables(forces: Forces | None) -> Iterator[tuple[str, Variable]]:
     """What `forces` and `reactions` give."""
     if forces is None:
         return
     for name in ("normal", "shear", "eccentricity", "moment", "damage"):
         values = getattr(forces, name)
         apart = (f"part_of_{name}",) if values.ndim == 3 else ()
-        yield name, _described(Forces, name, ("t", "joint", *apart), values)
+        yield name, _described_variable(Forces, name, ("t", "joint", *apart), values)
     for name in ("reactions", "guides"):
         for block, values in getattr(forces, name).items():
-            yield f"{name} {block}", _described(Forces, name, ("t", f"part_of_{name}"), values)
+            yield f"{name} {block}", _described_variable(Forces, name, ("t", f"part_of_{name}"), values)
     for link, values in forces.links.items():
-        yield f"pull of {link}", _described(Forces, "links", ("t",), values)
+        yield f"pull of {link}", _described_variable(Forces, "links", ("t",), values)
 
 
-def _of_ledger(ledger: Ledger | None) -> Iterator[tuple[str, Variable]]:
+def _ledger_variables(ledger: Ledger | None) -> Iterator[tuple[str, Variable]]:
     """Every part of the energy."""
     if ledger is None:
         return
     for name in (*STATE_ENERGY, "friction", "ground"):
-        yield f"ledger {name}", _described(Ledger, name, ("t",), getattr(ledger, name))
-    for kind in ("dashpots", "actuators", "ties", "broken", "ends", "bonds"):
-        for name, values in getattr(ledger, kind).items():
-            yield f"ledger {kind} {name}", _described(Ledger, kind, ("t",), values)
+        yield f"ledger {name}", _described_variable(Ledger, name, ("t",), getattr(ledger, name))
+    for account in ("dashpots", "actuators", "ties", "broken", "ends", "bonds"):
+        for name, values in getattr(ledger, account).items():
+            yield f"ledger {account} {name}", _described_variable(Ledger, account, ("t",), values)
 
 
-def _described(kind: type, name: str, dims: tuple[str, ...], values: Array) -> Variable:
+def _described_variable(kind: type, name: str, dims: tuple[str, ...], values: Array) -> Variable:
     unit, text = unit_and_text(kind, name)
     return Variable(dims, values, unit or "-", text or name)

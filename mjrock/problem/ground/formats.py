@@ -123,8 +123,8 @@ def parse_esm(lines: list[str]) -> list[Trace]:
     for name in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"):
         if not head.get(name):
             raise ValueError(f"the header has no {name}; an ESM or ITACA file of accelerations states it")
-    if (kind := head.get("DATA_TYPE", "ACCELERATION").upper()) != "ACCELERATION":
-        raise NoRecordError(f"DATA_TYPE is {in_message(kind)}; the record has to be one of ACCELERATION")
+    if (data_type := head.get("DATA_TYPE", "ACCELERATION").upper()) != "ACCELERATION":
+        raise NoRecordError(f"DATA_TYPE is {in_message(data_type)}; the record has to be one of ACCELERATION")
     require_accelerations({list(head).index("UNITS") + 1: f"UNITS: {head['UNITS']}"})
     if (unit := head["UNITS"].lower()) not in ESM_UNITS:
         raise ValueError(f"UNITS is {in_message(head['UNITS'])}; the valid ones are {', '.join(ESM_UNITS)}")
@@ -199,10 +199,10 @@ def parse_knet(lines: list[str]) -> list[Trace]:
     for place, line in enumerate(lines[:KNET_HEAD], 1):
         for name, written in KNET.items():
             if line.startswith(name):
-                found = re.fullmatch(written, line[len(name) :].strip(), AS_ASCII)
-                if found is None:
+                match = re.fullmatch(written, line[len(name) :].strip(), AS_ASCII)
+                if match is None:
                     raise ValueError(f"line {place} is {in_message(line)}: not as in a K-NET or KiK-net file")
-                stated |= found.groupdict()
+                stated |= match.groupdict()
     if missing := [name for name, written in KNET.items() if re.findall(r"P<(\w+)>", written)[0] not in stated]:
         raise NoRecordError(f"the first {KNET_HEAD} lines have no {missing[0]}: not a K-NET or KiK-net file")
     rate, gal, full = (value_of(stated[name]) for name in ("rate", "gal", "counts"))
@@ -246,13 +246,13 @@ def channels(lines: Sequence[str]) -> Iterator[Channel]:
     have that width.
     """
     text: list[str] = []
-    rest = iter(enumerate(lines, 1))
-    for place, line in rest:
+    numbered = iter(enumerate(lines, 1))
+    for place, line in numbered:
         require_visible(line, place)
         text += [line] if re.search("[a-zA-Z]{2}", line) else []
         if head := SAMPLE_COUNT.fullmatch(line):
             values: list[float] = []
-            while len(values) < int(head[1]) and (row := next(rest, None)):
+            while len(values) < int(head[1]) and (row := next(numbered, None)):
                 values += numbers(_columns(row[1], line), row[0])
             if len(values) != int(head[1]):
                 raise ValueError(f"{len(values)} samples; line {place} states {head[1]}")
@@ -272,7 +272,7 @@ def parse_channels(lines: list[str]) -> list[Trace]:
 
     The step stands in the line before the samples. In COSMOS it is the 62nd number of the header of real ones [ms].
     """
-    found = []
+    traces = []
     for channel in channels(lines):
         announced = lines[channel.place - 1]
         units = stated_units(announced)
@@ -282,10 +282,10 @@ def parse_channels(lines: list[str]) -> list[Trace]:
             dt = value_of(every[1]) if every[2].lower() == "sec" else 1 / max(value_of(every[1]), 1 / COARSEST)
         else:
             dt = _cosmos_step(lines, channel.place)
-        found.append(Trace(ACCELERATION_UNITS[units[0]] * channel.values, dt, _channel_header(channel.text)))
-    if not found:
+        traces.append(Trace(ACCELERATION_UNITS[units[0]] * channel.values, dt, _channel_header(channel.text)))
+    if not traces:
         raise NoRecordError("no line such as 7500 points of accel data at .010 sec: not a file of CSMIP or COSMOS")
-    return found
+    return traces
 
 
 def _cosmos_step(lines: Sequence[str], place: int) -> float:
@@ -333,7 +333,7 @@ def _geonet_component(lines: list[str], first: int) -> Trace:
         "unit": re.compile(r"Acceleration:\s+peak\s+\S+ (mm/s/s).*", AS_ASCII),
     }  # fmt: skip
     for place, line in enumerate(lines[first : first + 16], first + 1):
-        stated |= {name: (place, found) for name, pattern in patterns.items() if (found := pattern.fullmatch(line))}
+        stated |= {name: (place, match) for name, pattern in patterns.items() if (match := pattern.fullmatch(line))}
     if missing := [name for name in patterns if name not in stated]:
         raise ValueError(f"lines {first + 1} to {first + 16} state no {missing[0]}: no header of a GeoNet component")
     count, (place, every) = int(stated["count"][1][1]), stated["step"]
@@ -352,13 +352,13 @@ def parse_smc(lines: list[str]) -> list[Trace]:
     """The record of an SMC file of the USGS: a corrected accelerogram at a stated rate, in cm/s2."""
     if len(lines) < SMC_HEAD or not re.match(r"\s*2 CORRECTED ACCELEROGRAM", lines[0], AS_ASCII):
         raise NoRecordError(f"line 1 is {in_message(lines[0])}: not an SMC file of a record, 2 CORRECTED ACCELEROGRAM")
-    whole, real = all_numbers(lines, 11, 17), all_numbers(lines, 17, SMC_HEAD)
-    if len(whole) != 48 or len(real) != 50:
-        raise ValueError(f"lines 12 to 27 hold {len(whole)} whole and {len(real)} real numbers; they are 48 and 50")
+    integers, real = all_numbers(lines, 11, 17), all_numbers(lines, 17, SMC_HEAD)
+    if len(integers) != 48 or len(real) != 50:
+        raise ValueError(f"lines 12 to 27 hold {len(integers)} whole and {len(real)} real numbers; they are 48 and 50")
     rate = require_within("line 18: samples a second", real[1], 1 / COARSEST, 1 / FINEST, "Hz")
-    comments = int(require_within("line 13: number of comments", whole[15], 0, 10_000))
-    values = samples(lines, SMC_HEAD + comments, int(whole[16]), 14)
-    header = {"STREAM": "UP" if whole[12] in (0, 180) else f"{whole[13]:03g}"}
+    comments = int(require_within("line 13: number of comments", integers[15], 0, 10_000))
+    values = samples(lines, SMC_HEAD + comments, int(integers[16]), 14)
+    header = {"STREAM": "UP" if integers[12] in (0, 180) else f"{integers[13]:03g}"}
     if station := re.match(r"station =(.*?)\s*component=", lines[5]):
         header["STATION_NAME"] = station[1].strip()
     return [Trace(ACCELERATION_UNITS["cm/s2"] * values, 1 / rate, header)]
@@ -375,7 +375,7 @@ def parse_unam(lines: list[str]) -> list[Trace]:
         if re.search("CANAL|[:=]|-{3}", line):
             require_visible(line, place)
             name, _, value = line.partition(":")
-            fields.setdefault(next((one for one in UNAM if name.strip().startswith(one)), ""), Field(value, place))
+            fields.setdefault(next((key for key in UNAM if name.strip().startswith(key)), ""), Field(value, place))
             last = place
     if missing := [name for name in UNAM if name not in fields]:
         raise ValueError(f"the header has no {missing[0]}: not a file of UNAM of accelerations")
@@ -415,8 +415,8 @@ def seismograms(path: Path, unit: str | float | None) -> list[Trace]:
     try:
         stream = obspy.read(str(path))
     except Exception as error:
-        kind = NoRecordError if isinstance(error, TypeError) else ValueError  # of none of its formats, or damaged
-        raise kind(f"ObsPy does not read it: {in_message(str(error))}") from error
+        error_type = NoRecordError if isinstance(error, TypeError) else ValueError  # of none of its formats, or damaged
+        raise error_type(f"ObsPy does not read it: {in_message(str(error))}") from error
     if unit is None:
         raise NoRecordError(
             f"a file of {stream[0].stats._format} states no unit: give unit=, one of "
@@ -495,13 +495,13 @@ def recognised(path: Path, unit: str | float | None) -> list[Trace]:
     """The traces of a file: of a format that its first lines show, of a table whose header states its step and unit, or
     of a file of seismology by ObsPy."""
     start = path.read_bytes()[:4096]
-    kind = None if is_book(path) or start.startswith(UTF_16) else binary_kind(start)
-    if kind and (kind != BINARY or importlib.util.find_spec("obspy")):
+    binary = None if is_book(path) or start.startswith(UTF_16) else binary_kind(start)
+    if binary and (binary != BINARY or importlib.util.find_spec("obspy")):
         return seismograms(path, unit)
     lines = table_lines(path)
-    for one in FORMATS:
-        if any(one.signs.match(line) for line in lines[:FIRST_LINES]):
-            return one.parse(lines)
+    for file_format in FORMATS:
+        if any(file_format.signs.match(line) for line in lines[:FIRST_LINES]):
+            return file_format.parse(lines)
     if SEISMOLOGY.match(lines[0]):
         return seismograms(path, unit)
     try:
@@ -509,7 +509,7 @@ def recognised(path: Path, unit: str | float | None) -> list[Trace]:
     except OtherContentError:
         raise
     except ValueError as error:
-        names = ", ".join(one.name for one in FORMATS)
+        names = ", ".join(file_format.name for file_format in FORMATS)
         raise type(error)(
             f"{error}. It was read as a table, as from_csv and components_in do with unit=, dt=, columns= and skip=, "
             f"since it is none of the formats {names}, SAC, miniSEED"

@@ -137,7 +137,7 @@ class GroundMotion:
         return motion
 
     @classmethod
-    def _through(cls, vertices: Vertices, dt: float, name: str) -> Self:
+    def _through_vertices(cls, vertices: Vertices, dt: float, name: str) -> Self:
         """The motion through vertices, of even samples where they are those of a record; `dt` resolves it [s]."""
         vertices = vertices.tidied()
         even = vertices.even_step(dt)
@@ -156,7 +156,7 @@ class GroundMotion:
         values, step = checked_record(accel, dt)
         keep(self, accel=values, dt=step, name=name, header=dict(header or {}), instants=None)
 
-    def _with(self, accel: Array, name: str) -> GroundMotion:
+    def _with_accelerations(self, accel: Array, name: str) -> GroundMotion:
         """Other accelerations at the same instants."""
         motion = GroundMotion.__new__(GroundMotion)
         motion._fill(accel, self.dt, name, self.header)
@@ -187,7 +187,7 @@ class GroundMotion:
         if not isinstance(other, GroundMotion):
             return NotImplemented
         total, finest = self.vertices.plus(other.vertices), min(self.dt, other.dt)
-        return GroundMotion._through(total, finest, f"{self.name} + {other.name}")
+        return GroundMotion._through_vertices(total, finest, f"{self.name} + {other.name}")
 
     def __radd__(self, other: object) -> GroundMotion:
         """The motion itself, where `sum` adds it to the zero with which it begins."""
@@ -320,11 +320,11 @@ class GroundMotion:
             raise ValueError(f"factor = {spelt(factor)}, peak = {spelt(peak)}: give either a factor or a peak [m/s2]")
         if peak is None:
             multiple = require_within("factor", factor, -1e6, 1e6)
-            return self._with(multiple * self.accel, f"{self.name} x {multiple:g}")
+            return self._with_accelerations(multiple * self.accel, f"{self.name} x {multiple:g}")
         peak = require_within("peak", peak, 0.0, 1e3, "m/s2")
         if self.peak == 0:
             raise ValueError(f"{self.name} is at rest: no factor gives it peak = {peak:g} m/s2")
-        return self._with(peak / self.peak * self.accel, f"{self.name} to {peak:g} m/s2")
+        return self._with_accelerations(peak / self.peak * self.accel, f"{self.name} to {peak:g} m/s2")
 
     def delayed(self, time: float) -> GroundMotion:
         """The motion after `time` of quiet ground [s], 0 to 1e4.
@@ -337,7 +337,7 @@ class GroundMotion:
         require_size("the number of samples with the delay", quiet + len(self.accel), "choose a shorter delay")
         times = np.concatenate((self.dt * np.arange(quiet), [time], time + self.times))
         accel = np.concatenate((np.zeros(quiet + 1), self.accel))
-        later = GroundMotion._through(Vertices(times, accel), self.dt, f"{self.name} after {time:g} s")
+        later = GroundMotion._through_vertices(Vertices(times, accel), self.dt, f"{self.name} after {time:g} s")
         return later.headed(self.header)
 
     def along(self, other: GroundMotion, azimuth: float) -> GroundMotion:
@@ -364,11 +364,11 @@ class GroundMotion:
                 f"{self.dt:g} s, as the component that points north"
             )
         accel = math.cos(angle) * self.accel + math.sin(angle) * other.accel
-        return self._with(accel, f"{self.name} and {other.name} along {angle:.4g} rad")
+        return self._with_accelerations(accel, f"{self.name} and {other.name} along {angle:.4g} rad")
 
     def reversed(self) -> GroundMotion:
         """The motion of the other polarity."""
-        return self._with(-self.accel, f"{self.name}, reversed")
+        return self._with_accelerations(-self.accel, f"{self.name}, reversed")
 
     def resampled(self, dt: SampleStep) -> GroundMotion:
         """The motion at another time step `dt` [s], as long as before within half of it, linear between its samples.
@@ -424,10 +424,10 @@ class GroundMotion:
         if band is not None:
             accel = within_band(accel, self.dt, band)
             accel = accel if baseline is None else without_baseline(accel, self.dt, baseline)
-        done = [] if baseline is None else [f"without {baseline} baseline"]
+        steps = [] if baseline is None else [f"without {baseline} baseline"]
         if band is not None:
-            done += [f"{side} {corner:g} Hz" for side, corner in zip(("above", "below"), band, strict=True) if corner]
-        return GroundMotion(accel, self.dt, ", ".join([self.name, *done]), self.header)
+            steps += [f"{side} {corner:g} Hz" for side, corner in zip(("above", "below"), band, strict=True) if corner]
+        return GroundMotion(accel, self.dt, ", ".join([self.name, *steps]), self.header)
 
     def _require_even(self, takes: str) -> None:
         """Raise ValueError with what is taken for a motion by pieces."""
@@ -484,7 +484,7 @@ class GroundMotion:
         if self.instants is None:
             return moved
         total = moved.vertices.plus(Vertices(self.times, rigid * self.accel))
-        return GroundMotion._through(total, h, name).headed(moved.header)
+        return GroundMotion._through_vertices(total, h, name).headed(moved.header)
 
     @classmethod
     @within_ranges
@@ -561,22 +561,22 @@ class GroundMotion:
         takes = "pairs of a duration [s] and an acceleration [m/s2], at least one"
         require_sequence("pieces", pieces, takes)
         require_size("the number of samples", 2 * len(pieces), "give fewer pieces")
-        found = []
+        checked = []
         for i, piece in enumerate(pieces):
             if not isinstance(piece, Sequence) or isinstance(piece, str) or len(piece) != 2:
                 raise TypeError(f"pieces[{i}] = {shown(piece)} is no pair; pieces takes {takes}")
             duration = require_within(f"duration of pieces[{i}]", piece[0], FINEST, 1e3, "s")
-            found.append((duration, require_within(f"acceleration of pieces[{i}]", piece[1], -1e6, 1e6, "m/s2")))
-        if not found:
+            checked.append((duration, require_within(f"acceleration of pieces[{i}]", piece[1], -1e6, 1e6, "m/s2")))
+        if not checked:
             raise ValueError(f"pieces is empty; it takes {takes}")
-        return cls._of_pieces(found, f"{len(found)} pieces, {sum(duration for duration, _ in found):g} s")
+        return cls._of_pieces(checked, f"{len(checked)} pieces, {sum(duration for duration, _ in checked):g} s")
 
     @classmethod
     def _of_pieces(cls, pieces: Sequence[tuple[float, float]], name: str) -> Self:
         durations, accel = np.array(pieces, dtype=float).T
         ends = np.cumsum(durations)
         times = np.column_stack((np.append(0.0, ends[:-1]), ends)).ravel()
-        return cls._through(Vertices(times, np.repeat(accel, 2)), float(durations.min()), name)
+        return cls._through_vertices(Vertices(times, np.repeat(accel, 2)), float(durations.min()), name)
 
     @classmethod
     @within_ranges
@@ -603,13 +603,13 @@ class GroundMotion:
             ValueError: for a value outside its range.
         """
         samples = _samples(samples, period, 10)
-        kind = "antisymmetric" if require_flag("antisymmetric", antisymmetric) else "symmetric"
+        symmetry = "antisymmetric" if require_flag("antisymmetric", antisymmetric) else "symmetric"
         half = math.ceil((1.75 if antisymmetric else 1.35) * samples)
         t = np.arange(-half, half + 1) / samples
         u, s = np.pi * t, 2 * np.pi / math.sqrt(3) * t
         shape = (s**2 - 3) * s * np.exp(-(s**2) / 2) if antisymmetric else (1 - 2 * u**2) * np.exp(-(u**2))
         accel = amplitude * shape / np.abs(shape).max()
-        return cls(accel, period / samples, f"{kind} Ricker {amplitude:g} m/s2, {period:g} s")
+        return cls(accel, period / samples, f"{symmetry} Ricker {amplitude:g} m/s2, {period:g} s")
 
     @classmethod
     @within_ranges
@@ -692,10 +692,10 @@ class GroundMotion:
         """
         require_kind("component", component, str, type(None))
         traces = read(path, lambda file: recognised(file, unit))
-        found = [one.header.get("STREAM", "") for one in traces]
-        fit = [one for one, name in zip(traces, found, strict=True) if component in (None, name)]
+        streams = [trace.header.get("STREAM", "") for trace in traces]
+        fit = [trace for trace, name in zip(traces, streams, strict=True) if component in (None, name)]
         if len(fit) != 1:
-            raise ValueError(f"{path}: component = {component!r}; the file has {', '.join(map(repr, found))}")
+            raise ValueError(f"{path}: component = {component!r}; the file has {', '.join(map(repr, streams))}")
         return motion_of(fit[0], path)
 
     @classmethod
@@ -833,9 +833,9 @@ def _instants(t: ArrayLike) -> Array:
     return times
 
 
-def _samples(value: int, span: float, least: int) -> int:
+def _samples(value: int, span: float, fewest: int) -> int:
     """The number of steps to a span [s], such that a step is one of a motion."""
-    return require_whole("samples", value, max(least, math.ceil(span / COARSEST)), math.floor(span / FINEST))
+    return require_whole("samples", value, max(fewest, math.ceil(span / COARSEST)), math.floor(span / FINEST))
 
 
 def integral(accel: Array, dt: float | Array) -> Array:
@@ -883,7 +883,7 @@ def within_band(accel: Array, dt: float, band: Sequence[float | None]) -> Array:
         high = require_within("upper corner of band", high, max(1e-3, 1.01 * (low or 0.0)), 0.49 / dt, "Hz")
     pad = math.ceil(1.5 * FILTER_ORDER / ((low or high) * dt))  # type: ignore[operator]
     require_size("the number of samples with zeros around them", len(accel) + 2 * pad, "raise the lower corner")
-    corners, kind = (low or high, "low" if low is None else "high") if None in band else (band, "band")
-    sos = scipy.signal.butter(FILTER_ORDER, corners, kind, output="sos", fs=1 / dt)
+    corners, filter_type = (low or high, "low" if low is None else "high") if None in band else (band, "band")
+    sos = scipy.signal.butter(FILTER_ORDER, corners, filter_type, output="sos", fs=1 / dt)
     filtered = scipy.signal.sosfiltfilt(sos, np.pad(accel, pad), padtype=None)
     return np.asarray(filtered[pad : pad + len(accel)])

@@ -77,7 +77,7 @@ def of_pieces(ground: Vertices, at: Array, period: float, damping: float) -> Osc
     decay, free = damping * omega, omega * math.sqrt(1 - damping**2)
     place = np.append(np.searchsorted(at, ground.times), len(at))
     lengths, rises = np.append(np.diff(ground.times), math.inf), np.append(np.diff(ground.values), 0.0)
-    found, u, v = np.zeros((2, len(at))), 0.0, 0.0
+    states, u, v = np.zeros((2, len(at))), 0.0, 0.0
     for k, (start, length) in enumerate(zip(ground.times.tolist(), lengths.tolist(), strict=True)):
         if length == 0:
             continue
@@ -88,9 +88,9 @@ def of_pieces(ground: Vertices, at: Array, period: float, damping: float) -> Osc
         shrink, cosine, sine = np.exp(-decay * tau), np.cos(free * tau), np.sin(free * tau) / free
         us = steady[0] + steady[1] * tau + shrink * (c * cosine + (d + decay * c) * sine)
         vs = steady[1] + shrink * (d * cosine - (omega**2 * c + decay * d) * sine)
-        found[:, place[k] : place[k + 1]] = us[:-1], vs[:-1]
+        states[:, place[k] : place[k + 1]] = us[:-1], vs[:-1]
         u, v = float(us[-1]), float(vs[-1])
-    return Oscillation(found[0], -(omega**2) * found[0] - 2 * decay * found[1])
+    return Oscillation(states[0], -(omega**2) * states[0] - 2 * decay * states[1])
 
 
 def one_or_row(name: str, values: ArrayLike, low: float, high: float, unit: str = "") -> Array:
@@ -143,12 +143,12 @@ def building_modes(period: Periods, damping: BuildingDamping, participation: Par
     Raises:
         TypeError, ValueError: for a value outside its range, or shapes that differ.
     """
-    periods, gammas = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (period, participation))
+    periods, gammas = (np.atleast_1d(np.asarray(argument, dtype=float)) for argument in (period, participation))
     for name, row in (("period", periods), ("participation", gammas)):
         require_row(name, row, "value")
-    least: Within = get_args(ModeShape)[1]
+    valid: Within = get_args(ModeShape)[1]
     try:
-        shapes = one_or_row("height", height, least.low, least.high)
+        shapes = one_or_row("height", height, valid.low, valid.high)
     except ValueError as error:
         meant = "it is a share, the shape of a mode at the floor over that at the top; z / H for a straight first mode"
         raise ValueError(f"{error}; {meant}") from None

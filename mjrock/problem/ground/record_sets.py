@@ -124,9 +124,9 @@ def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
     Raises:
         ValueError: for a name that goes with others in more than one way.
     """
-    groups = list(_by_header(headers))
+    groups = list(_grouped_by_header(headers))
     used = {name for group in groups for name in group.tokens}
-    groups += _by_names({name: header for name, header in headers.items() if name not in used})
+    groups += _grouped_by_names({name: header for name, header in headers.items() if name not in used})
     used = {name for group in groups for name in group.tokens}
     for name, header in headers.items():
         if name not in used:
@@ -137,7 +137,7 @@ def grouped(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
     return sorted(groups)
 
 
-def _by_header(headers: Mapping[str, Mapping[str, str]]) -> Iterator[RecordFiles]:
+def _grouped_by_header(headers: Mapping[str, Mapping[str, str]]) -> Iterator[RecordFiles]:
     """Files whose headers state one station and event, and directions that go together."""
     sets: dict[tuple[str, ...], dict[str, str]] = {}
     for name, header in headers.items():
@@ -150,14 +150,14 @@ def _by_header(headers: Mapping[str, Mapping[str, str]]) -> Iterator[RecordFiles
             yield _group(tokens, "header")
 
 
-def _by_names(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
+def _grouped_by_names(headers: Mapping[str, Mapping[str, str]]) -> list[RecordFiles]:
     """Files whose names differ in their direction alone, and whose headers do not differ."""
     sets: dict[str, dict[str, str]] = {}
     for name, header in headers.items():
         for token, key in _candidates(name, header):
             sets.setdefault(key, {})[name] = token
-    same = {key: len({_identity(name, headers[name]) for name in tokens}) == 1 for key, tokens in sets.items()}
-    groups = {key: tokens for key, tokens in sets.items() if same[key] and of_one_record(list(tokens.values()))}
+    alike = {key: len({_identity(name, headers[name]) for name in tokens}) == 1 for key, tokens in sets.items()}
+    groups = {key: tokens for key, tokens in sets.items() if alike[key] and of_one_record(list(tokens.values()))}
     for name in headers:
         if len(keys := [key for key, tokens in groups.items() if name in tokens]) > 1:
             raise ValueError(f"{name} goes with other files in more than one way: {', '.join(keys)}; give a pattern")
@@ -178,15 +178,15 @@ def _candidates(name: str, header: Mapping[str, str]) -> Iterator[tuple[str, str
     """
     stream = header.get("STREAM", "")
     for pattern in DIRECTION_IN_NAME:
-        for found in pattern.finditer(name):
-            token = found[1]
+        for match in pattern.finditer(name):
+            token = match[1]
             if is_direction(stream) and is_vertical(stream) != is_vertical(token):
                 continue
-            if is_vertical(token) and AZIMUTH_AT_END.fullmatch(name[found.end() :]):
+            if is_vertical(token) and AZIMUTH_AT_END.fullmatch(name[match.end() :]):
                 continue
-            first = found.end() - 1 if CHANNEL_CODE.fullmatch(token) else found.start()
+            first = match.end() - 1 if CHANNEL_CODE.fullmatch(token) else match.start()
             if not token.isdigit() or int(token) <= 360:
-                yield token, f"{name[:first].removesuffix('-')}?{name[found.end() :]}"
+                yield token, f"{name[:first].removesuffix('-')}?{name[match.end() :]}"
 
 
 def _group(tokens: dict[str, str], by: str) -> RecordFiles:
@@ -280,8 +280,8 @@ class RecordSet(dict[str, tuple[GroundMotion, ...]]):
         require_kind("spectrum", spectrum, *get_args(SpectrumOfCode))
         if not self:
             raise ValueError("the set has no records")
-        found = [response_spectrum(motion, periods, damping) for motion in self.horizontal]
-        return np.asarray(np.mean([one.Sa for one in found], axis=0) / spectrum(found[0].period, damping))
+        spectra = [response_spectrum(motion, periods, damping) for motion in self.horizontal]
+        return np.asarray(np.mean([response.Sa for response in spectra], axis=0) / spectrum(spectra[0].period, damping))
 
 
 def components_in(
@@ -353,20 +353,20 @@ def records_in(
     names = [name for name in files if fnmatch.fnmatch(name.lower(), pattern.lower())]
     if not names:
         raise ValueError(f"{folder} has no file that fits the pattern {spelt(pattern)}")
-    found = RecordSet()
+    records = RecordSet()
     single: dict[str, GroundMotion] = {}
-    for name, motions in _read_all({name: files[name] for name in names}, read, found.skipped).items():
+    for name, motions in _read_all({name: files[name] for name in names}, read, records.skipped).items():
         if isinstance(motions, GroundMotion) or len(motions) == 1:
             single[name] = motions if isinstance(motions, GroundMotion) else motions[0]
         elif of_one_record([motion.header.get("STREAM", "") for motion in motions]):
-            found[name], found.by[name] = tuple(motions), "one file"
+            records[name], records.by[name] = tuple(motions), "one file"
         else:
             single |= {f"{name}, {i} {motion.header.get('STREAM', '')}": motion for i, motion in enumerate(motions)}
     for key, tokens, by in grouped({name: motion.header for name, motion in single.items()}):
-        unused = key if key not in found else next(iter(tokens))
-        found[unused] = tuple(_directed(single[name], token) for name, token in tokens.items())
-        found.by |= {unused: by} if len(tokens) > 1 else {}
-    return _with_origins(dict(sorted(found.items())), found)
+        unused = key if key not in records else next(iter(tokens))
+        records[unused] = tuple(_directed(single[name], token) for name, token in tokens.items())
+        records.by |= {unused: by} if len(tokens) > 1 else {}
+    return _with_origins(dict(sorted(records.items())), records)
 
 
 def _read_all(
@@ -374,10 +374,10 @@ def _read_all(
 ) -> dict[str, GroundMotion | Sequence[GroundMotion]]:
     """What is read from each file by its name. Those that hold no record are named in `skipped`, with a warning.
     Raises a `NoRecordError` where none holds one."""
-    found = {}
+    contents = {}
     for name, path in files.items():
         try:
-            found[name] = read(path)
+            contents[name] = read(path)
         except NoRecordError as error:
             if len(skipped) + 1 == len(files):
                 raise
@@ -388,7 +388,7 @@ def _read_all(
             f"{len(skipped)} of {len(files)} files hold no record and are left out: {named(list(skipped))}; {first}: "
             f"{skipped[first]}; pattern= takes others, and .skipped has each reason"
         )
-    return found
+    return contents
 
 
 def _directed(motion: GroundMotion, token: str) -> GroundMotion:
@@ -405,17 +405,17 @@ def _horizontal(components: Sequence[GroundMotion]) -> list[GroundMotion]:
 
 def _with_origins(records: Records, *origins: Records) -> RecordSet:
     """A set, with what the sets that it is made of know of their files."""
-    made = RecordSet(records)
+    record_set = RecordSet(records)
     for origin in origins:
         if isinstance(origin, RecordSet):
-            made.by.update(origin.by)
-            made.skipped.update(origin.skipped)
-    return made
+            record_set.by.update(origin.by)
+            record_set.skipped.update(origin.skipped)
+    return record_set
 
 
-def _joined(one: Records, other: Records) -> RecordSet:
+def _joined(first: Records, second: Records) -> RecordSet:
     """The records of two sets; those of the second where both have one of a name."""
-    return _with_origins({**one, **other}, one, other)
+    return _with_origins({**first, **second}, first, second)
 
 
 def scaled_together(

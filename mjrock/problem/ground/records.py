@@ -148,14 +148,14 @@ def text_lines(path: Path) -> list[str]:
     the end are dropped.
     """
     data = path.read_bytes()
-    if kind := binary_kind(data):
-        raise NoRecordError(f"{kind}; a text of accelerations in UTF-8 or Latin-1 is needed")
+    if binary := binary_kind(data):
+        raise NoRecordError(f"{binary}; a text of accelerations in UTF-8 or Latin-1 is needed")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
-    if "\x1a" in text[len(whole := text.rstrip(" \t\r\n\x1a")) :]:
-        text = whole
+    if "\x1a" in text[len(trimmed := text.rstrip(" \t\r\n\x1a")) :]:
+        text = trimmed
     if not text.strip():
         raise NoRecordError("an empty file; a text of accelerations is needed")
     return re.split(r"\r\r?\n|\r|\n", text)
@@ -172,8 +172,8 @@ class OtherContentError(NoRecordError):
 def quantities(text: str) -> list[str]:
     """The quantities that a text names: accelerations, velocities, displacements or spectra."""
     plain = " ".join(text.split())
-    found = [name for name, written in QUANTITIES.items() if written.search(plain)]
-    return ["accelerations", *found] if stated_units(plain) and "accelerations" not in found else found
+    names = [name for name, written in QUANTITIES.items() if written.search(plain)]
+    return ["accelerations", *names] if stated_units(plain) and "accelerations" not in names else names
 
 
 def require_accelerations(head: Mapping[int, str], name: str = "") -> None:
@@ -387,8 +387,8 @@ class RecordTable:
         """The number that the header states in one of these forms; a rate is turned into a step."""
         for place, line in self.head.items():
             for pattern in patterns:
-                if found := pattern.search(line[:HEADER_LINE]):
-                    value = value_of(found[1]) * (1e-3 if pattern is HEAD_STEP and found[2] else 1)
+                if match := pattern.search(line[:HEADER_LINE]):
+                    value = value_of(match[1]) * (1e-3 if pattern is HEAD_STEP and match[2] else 1)
                     return HeaderNumber(1 / value if pattern is HEAD_RATE and value else value, place)
         return None
 
@@ -411,8 +411,8 @@ class RecordTable:
     def choice(self, timed: bool) -> str:
         """The columns and how one chooses among them, in words."""
         named = f": {', '.join(f'{i} {in_message(name)}' for i, name in enumerate(self.names))}" if self.names else ""
-        such = "(0, 1) for times and accelerations" if timed else "0 for one of accelerations"
-        return f"{self.width} columns{named}; choose with columns=, such as columns={such}"
+        example = "(0, 1) for times and accelerations" if timed else "0 for one of accelerations"
+        return f"{self.width} columns{named}; choose with columns=, such as columns={example}"
 
 
 def table_lines(path: Path, sheet: str | None = None) -> list[str]:
@@ -454,7 +454,7 @@ def _variables(path: Path) -> dict[str, list[str]]:
         raise ValueError(f"SciPy does not read it as a MATLAB file: {in_message(str(error))}") from None
     head: list[str] = []
     columns: dict[int, dict[str, Array]] = {}
-    for name, value in _flat(content):
+    for name, value in _flat_variables(content):
         array = np.squeeze(np.asarray(value))
         if isinstance(value, str):
             head.append(f"{name}: {' '.join(value.split())}")
@@ -462,20 +462,24 @@ def _variables(path: Path) -> dict[str, list[str]]:
             head.append(f"{name} = {float(array):.17g}")
         elif array.dtype.kind in "iuf" and array.ndim < 3 and array.size:
             rows = array if array.ndim == 1 or array.shape[0] > array.shape[1] else array.T
-            of = {name: rows} if rows.ndim == 1 else {f"{name} {i}": rows[:, i] for i in range(rows.shape[1])}
-            columns.setdefault(len(rows), {}).update(of)
+            group = {name: rows} if rows.ndim == 1 else {f"{name} {i}": rows[:, i] for i in range(rows.shape[1])}
+            columns.setdefault(len(rows), {}).update(group)
     tables = {}
-    for of in columns.values():
-        rows = np.column_stack([values.astype(float) for values in of.values()]).tolist()
-        tables[next(iter(of)).split(" ")[0]] = [*head, "\t".join(of), *("\t".join(map(repr, row)) for row in rows)]
+    for group in columns.values():
+        rows = np.column_stack([values.astype(float) for values in group.values()]).tolist()
+        tables[next(iter(group)).split(" ")[0]] = [
+            *head,
+            "\t".join(group),
+            *("\t".join(map(repr, row)) for row in rows),
+        ]
     return tables
 
 
-def _flat(content: Mapping[str, object], before: str = "") -> Iterator[tuple[str, object]]:
+def _flat_variables(content: Mapping[str, object], before: str = "") -> Iterator[tuple[str, object]]:
     """The variables of a MATLAB file by their names, those within structures too."""
     for name, value in content.items():
         if isinstance(value, Mapping):
-            yield from _flat(value, f"{before}{name}.")
+            yield from _flat_variables(value, f"{before}{name}.")
         elif not name.startswith("__"):
             yield f"{before}{name}", value
 
@@ -550,14 +554,14 @@ def _traces_of(table: RecordTable, options: TableOptions, scale: float) -> list[
     if stated and not FINEST <= stated.value <= COARSEST:
         stated = None
     if stated:
-        _agree("dt, which was given,", dt, stated)
+        _require_agreement("dt, which was given,", dt, stated)
         dt = stated.value if dt is None and not timed else dt
-    in_rows = rows_requested or (options.columns is None and dt is not None and not timed and _in_rows(table))
+    in_rows = rows_requested or (options.columns is None and dt is not None and not timed and _stands_in_rows(table))
     if in_rows:
         columns, dt = _samples_in_rows(table, dt, scale)
     else:
         columns, dt = _columns_of(table, options, dt)
-        _agree("the step of the times", dt, stated)
+        _require_agreement("the step of the times", dt, stated)
     for i in columns:
         require_accelerations(table.head, "" if in_rows else table.name(i))
     count = table.stated(HEAD_COUNT)
@@ -577,7 +581,7 @@ def _samples_in_rows(table: RecordTable, dt: float | None, scale: float) -> tupl
     values = np.array([x for row in table.values for x in row])
     if _has_pairs(values, table.decimals, scale):
         step_of_pairs = float(f"{_grid(scale * values[::2])[0]:.12g}")
-        _agree("dt, which was given,", dt, HeaderNumber(step_of_pairs, table.places[0]))
+        _require_agreement("dt, which was given,", dt, HeaderNumber(step_of_pairs, table.places[0]))
         return {0: values[1::2]}, step_of_pairs
     if dt is None:
         raise NoRecordError("samples in rows need their time step: give dt")
@@ -609,8 +613,8 @@ def _table_of(lines: Sequence[str], skip: int | None) -> RecordTable:
             rows.append([number(word, place) for word in words_of])
         except ValueError as error:
             require_accelerations(head | {place: line})
-            kind = NoRecordError if PROSE.search(line) else ValueError
-            raise kind(f"{error}; skip={place} leaves out what is above" if not rows else str(error)) from error
+            error_type = NoRecordError if PROSE.search(line) else ValueError
+            raise error_type(f"{error}; skip={place} leaves out what is above" if not rows else str(error)) from error
         decimals = max(decimals, len(words_of[0].partition(".")[2]))
     return RecordTable({} if skip is not None else head, _names(list(head.values()), rows), rows, list(texts), decimals)
 
@@ -671,10 +675,10 @@ def _without_header(
             others.
     """
     for rows in range(1, MOST_HEADER_NUMBERS):
-        lead, rest = [x for row in table.values[:rows] for x in row], table.values[rows:]
-        if len(lead) > MOST_HEADER_NUMBERS or len(rest) < 10:
+        lead, below = [x for row in table.values[:rows] for x in row], table.values[rows:]
+        if len(lead) > MOST_HEADER_NUMBERS or len(below) < 10:
             break
-        counts = {float(len(rest))} | ({float(sum(map(len, rest)))} if table.width > 2 else set())
+        counts = {float(len(below))} | ({float(sum(map(len, below)))} if table.width > 2 else set())
         if set(lead) & counts:
             steps = [x for x in lead if FINEST <= x < COARSEST]
             return table.without(rows), HeaderNumber(steps[0], table.places[0]) if len(steps) == 1 else stated
@@ -693,9 +697,9 @@ def _without_header(
         elif len(first) != table.width or early:
             doubted = 1
     if doubted:
-        where, given = table.places[0], "" if dt is None else f" (dt = {dt:g} s was given)"
+        where, hint = table.places[0], "" if dt is None else f" (dt = {dt:g} s was given)"
         raise ValueError(
-            f"{' and '.join(table.row_text(i) for i in range(doubted))}{given}: of the header, or the first row? "
+            f"{' and '.join(table.row_text(i) for i in range(doubted))}{hint}: of the header, or the first row? "
             f"skip={table.places[doubted] - 1} reads what follows, skip={where - 1} takes it as a row"
         )
     return table, stated
@@ -704,12 +708,12 @@ def _without_header(
 def _columns_of(table: RecordTable, options: TableOptions, dt: float | None) -> tuple[dict[int, Array], float]:
     """The accelerations by the number of their column, in the unit of the file, and their time step [s]."""
     if options.columns is not None:
-        given = [options.columns] if isinstance(options.columns, int | str) else list(options.columns)
-        if len(given) > table.width == 1:
+        requested = [options.columns] if isinstance(options.columns, int | str) else list(options.columns)
+        if len(requested) > table.width == 1:
             step = "" if dt else " and give its time step dt"
             chosen = f"columns = {in_message(str(options.columns))}"
             raise ValueError(f"line {table.places[0]} has one column, and {chosen} takes several; leave it out{step}")
-        picked = [_number_of(table, column) for column in given]
+        picked = [_number_of(table, column) for column in requested]
     else:
         picked = list(range(table.width))
     for place, row in zip(table.places, table.values, strict=True):
@@ -803,7 +807,7 @@ def _step_of(time: Array, table: RecordTable, scale: float, given: float | None)
     return dt
 
 
-def _agree(name: str, given: float | None, stated: HeaderNumber | None) -> None:
+def _require_agreement(name: str, given: float | None, stated: HeaderNumber | None) -> None:
     """Raise a ValueError with both readings where a step is another than the one that a header states."""
     if given is not None and stated is not None and abs(given - stated.value) > UNEVEN_TIME * stated.value:
         raise ValueError(
@@ -811,7 +815,7 @@ def _agree(name: str, given: float | None, stated: HeaderNumber | None) -> None:
         )
 
 
-def _in_rows(table: RecordTable) -> bool:
+def _stands_in_rows(table: RecordTable) -> bool:
     """Whether samples stand in rows.
 
     They do where the last row is shorter. They also do where at least four jump less along the rows than down the

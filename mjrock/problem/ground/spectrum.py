@@ -219,8 +219,8 @@ class _Alike:
     """A spectrum that equals another with the same numbers."""
 
     def __eq__(self, other: object) -> bool:
-        same = type(self) is type(other)
-        return same and all(map(np.array_equal, vars(self).values(), vars(other).values()))
+        same_type = type(self) is type(other)
+        return same_type and all(map(np.array_equal, vars(self).values(), vars(other).values()))
 
     def __hash__(self) -> int:
         return hash(type(self))
@@ -288,8 +288,8 @@ class FloorSpectrum(_Alike):
         """S_DeZ at the periods T [s], S_eZ (T/2 pi)^2 [m]; beyond b T_1 at least S_eZ(T_1) (b T_1/2 pi)^2, equation
         C8.7.1.12."""
         T, edge = periods_of(T), PLATEAU_TO * self.first
-        least = self(self.first, damping) * (edge / (2 * math.pi)) ** 2
-        return np.maximum(self(T, damping) * (T / (2 * math.pi)) ** 2, np.where(edge < T, least, 0.0))
+        least_displacement = self(self.first, damping) * (edge / (2 * math.pi)) ** 2
+        return np.maximum(self(T, damping) * (T / (2 * math.pi)) ** 2, np.where(edge < T, least_displacement, 0.0))
 
     @property
     def peak(self) -> float:
@@ -546,11 +546,11 @@ def scaled_by(
 ) -> GroundMotion:
     """The motion scaled by the factor of a target spectrum, whose header names both."""
     ground = target.ground if isinstance(target, FloorSpectrum) else target
-    given = f"{ground.code}, ag = {ground.ag:.6g} m/s2" if isinstance(ground, CodeSpectrum) else "spectrum of points"
-    given += " on a floor" if isinstance(target, FloorSpectrum) else ""
+    source = f"{ground.code}, ag = {ground.ag:.6g} m/s2" if isinstance(ground, CodeSpectrum) else "spectrum of points"
+    source += " on a floor" if isinstance(target, FloorSpectrum) else ""
     at = ", ".join(f"{period:.6g}" for period in np.atleast_1d(np.asarray(periods, dtype=float)))
-    made = f"{given}; factor {factor:.6g} over T = {at} s"
-    return motion.scaled(factor).headed({**motion.header, "SCALED_TO": made})
+    text = f"{source}; factor {factor:.6g} over T = {at} s"
+    return motion.scaled(factor).headed({**motion.header, "SCALED_TO": text})
 
 
 def factor_to_spectrum(

@@ -23,7 +23,7 @@ class Vertices(NamedTuple):
 
     def tidied(self) -> Vertices:
         """The same function with two vertices at a jump and one at any other instant, and so at both ends."""
-        times = _together(self.times)
+        times = _merged_instants(self.times)
         grows = np.diff(times) > 0
         opens, closes = np.append(True, grows), np.append(grows, True)
         jumps = closes & (self.values != self.values[opens][np.cumsum(opens) - 1]) & (times < times[-1])
@@ -43,23 +43,23 @@ class Vertices(NamedTuple):
         close = SAME_INSTANT * np.max(instants, initial=self.times[-1])
         near = self.times[np.minimum(np.searchsorted(self.times, instants - close), len(self.times) - 1)]
         instants = np.where(np.abs(near - instants) <= close, near, instants)
-        found = np.zeros((len(instants), 2))
+        sides = np.zeros((len(instants), 2))
         for column in (0, 1):
             after = np.searchsorted(self.times, instants, "right" if column else "left")
             within = np.flatnonzero((after > 0) & (after < len(self.times)))
             j = after[within]
             share = (instants[within] - self.times[j - 1]) / (self.times[j] - self.times[j - 1])
-            found[within, column] = (1 - share) * self.values[j - 1] + share * self.values[j]
-        return found
+            sides[within, column] = (1 - share) * self.values[j - 1] + share * self.values[j]
+        return sides
 
     def plus(self, other: Vertices) -> Vertices:
         """The sum of two functions, which jumps where one of them does."""
-        instants = _together(np.sort(np.concatenate((self.times, other.times))))
+        instants = _merged_instants(np.sort(np.concatenate((self.times, other.times))))
         values = self.sides(instants) + other.sides(instants)
         return Vertices(np.repeat(instants, 2), values.ravel()).tidied()
 
 
-def _together(times: Array) -> Array:
+def _merged_instants(times: Array) -> Array:
     """Instants that do not decrease. Those that rounding has set apart become the first of them."""
     starts = np.append(True, np.diff(times) > SAME_INSTANT * times[-1])
     return np.asarray(times[starts][np.cumsum(starts) - 1])

@@ -62,7 +62,9 @@ def doubts(case: MasonryCase) -> list[str]:
     mass = sum(masonry.blocks[i].mass for i in masonry.free)
     messages = of_motion(case.motion, case.duration, "masonry", sustained_acceleration(case))
     messages += of_effects(case.effects, Subject("masonry", "its block", mass), lambda link: _size_along(masonry, link))
-    return messages + [odd for name, jack in case.actuators.items() if (odd := _of_jack(name, jack, masonry, mass))]
+    return messages + [
+        doubt for name, jack in case.actuators.items() if (doubt := _doubt_of(name, jack, masonry, mass))
+    ]
 
 
 def sustained_acceleration(case: MasonryCase) -> float:
@@ -93,7 +95,7 @@ def _extent(masonry: Masonry, direction: Array) -> float:
     return float(np.ptp(np.concatenate([masonry.blocks[i].corners for i in masonry.free]) @ direction))
 
 
-def _of_jack(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
+def _doubt_of(name: str, jack: Actuator, masonry: Masonry, mass: float) -> str:
     """A doubt about an actuator, empty where there is none."""
     largest, extent = max(map(abs, jack.displacement[1])), _extent(masonry, np.array(jack.direction))
     if largest > extent and jack.stiffness * largest > SPRING_FORCE_OVER_WEIGHT * mass * GRAVITY:
@@ -165,8 +167,8 @@ class MasonryCase(Carrying):
 
     def __repr__(self) -> str:
         parts = [f"{self.duration:.6g} s", *(f"{name} {motion.name!r}" for name, motion in self.grounds.items())]
-        given = {name: getattr(self, name) for name in ("velocity", "supports", "tilt")}
-        parts += [name for name, value in given.items() if value is not None and len(value)]
+        optional = {name: getattr(self, name) for name in ("velocity", "supports", "tilt")}
+        parts += [name for name, value in optional.items() if value is not None and len(value)]
         parts += [type(effect).__name__ for effect in self.effects]
         return f"<MasonryCase of {self.masonry!r}: {', '.join(parts)}{'' if self.settled else ', as drawn'}>"
 
@@ -252,7 +254,7 @@ class MasonryCase(Carrying):
 
     def require_own_joints(self, *given: object) -> None:
         """Raise a ValueError where restitution or contacts are given beside the case, which has its own."""
-        if any(one is not None for one in given):
+        if any(argument is not None for argument in given):
             raise ValueError("masonry has its joints, with their stiffness and damping; leave e and contacts out")
 
     @property
@@ -319,7 +321,7 @@ class MasonryCase(Carrying):
         Raises:
             ValueError: if a block moves as its guide does not allow by more than a thousandth of sqrt(g size).
         """
-        guiding = [one.block for one in self.actuators.values() if any(one.guide)]
+        guiding = [actuator.block for actuator in self.actuators.values() if any(actuator.guide)]
         if not guiding:
             return velocity
         smallest = min(self.masonry.blocks[block].size for block in guiding)

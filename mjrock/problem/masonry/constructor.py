@@ -30,8 +30,8 @@ def of_builder(name: str, builder: Callable[..., Any]) -> classmethod[Any, Any, 
     """The class method that makes masonry of the blocks that a builder returns."""
     friction: Mapping[str, float] = getattr(builder, "friction", {})
 
-    def make(cls: type[Any], given: dict[str, Any], options: JointOptions) -> Any:
-        blocks, halves = builder(**given), given.get("halves")
+    def make(cls: type[Any], arguments: dict[str, Any], options: JointOptions) -> Any:
+        blocks, halves = builder(**arguments), arguments.get("halves")
         if not friction and halves is None:
             return cls(blocks, **options)
         joints = one_by_one(options)
@@ -48,9 +48,9 @@ def of_reader(name: str, read: Callable[..., object]) -> classmethod[Any, Any, A
     """The class method that makes masonry of the meshes that a reader finds in a file."""
     (source,) = inspect.signature(read).parameters
 
-    def make(cls: type[Any], given: dict[str, Any], options: JointOptions) -> Any:
-        meshes = given.pop(source)
-        return cls._of_meshes(read, meshes, FileOptions(**given), options)
+    def make(cls: type[Any], arguments: dict[str, Any], options: JointOptions) -> Any:
+        meshes = arguments.pop(source)
+        return cls._of_meshes(read, meshes, FileOptions(**arguments), options)
 
     return _class_method(name, make, read, FileOptions)
 
@@ -61,12 +61,12 @@ def _class_method(
     """A class method with the arguments of some functions and the keywords of masonry, as `make` takes them."""
     functions = (*functions, joint_options)
     parameters = [inspect.Parameter("cls", inspect.Parameter.POSITIONAL_OR_KEYWORD)]
-    parameters += [one for function in functions for one in inspect.signature(function).parameters.values()]
+    parameters += [parameter for function in functions for parameter in inspect.signature(function).parameters.values()]
     signature = inspect.Signature(parameters, return_annotation="Self")
 
-    def construct(*given: object, **options: object) -> object:
+    def construct(*arguments: object, **options: object) -> object:
         try:
-            bound = signature.bind(*given, **options).arguments
+            bound = signature.bind(*arguments, **options).arguments
         except TypeError as error:
             raise TypeError(f"Masonry.{name}: {error}") from None
         return make(bound.pop("cls"), bound, bound.pop("options", {}))
@@ -74,18 +74,18 @@ def _class_method(
     construct.__name__, construct.__qualname__, construct.__doc__ = name, f"Masonry.{name}", joined_doc(*functions)
     construct.__module__ = functions[0].__module__
     hints = (get_type_hints(function, include_extras=True) for function in functions)
-    construct.__annotations__ = {key: hint for each in hints for key, hint in each.items()} | {"return": Self}
+    construct.__annotations__ = {key: hint for part in hints for key, hint in part.items()} | {"return": Self}
     construct.__signature__ = signature  # type: ignore[attr-defined]
     return classmethod(with_known_keywords(construct, f"Masonry.{name}"))
 
 
 def joined_doc(*functions: Callable[..., object]) -> str:
     """The docstring of the first function, with the arguments, errors and warnings of all."""
-    found = {"Args": "", "Raises": "", "Warns": "", "Examples": ""}
+    sections = {"Args": "", "Raises": "", "Warns": "", "Examples": ""}
     heads = []
     for function in functions:
         head, *parts = SECTION.split(inspect.getdoc(function) or "")
         heads.append(head.rstrip())
         for section, text in zip(parts[::2], parts[1::2], strict=True):
-            found[section] += text.rstrip() + "\n"
-    return "\n\n".join([heads[0], *(f"{section}:\n{text.rstrip()}" for section, text in found.items() if text)])
+            sections[section] += text.rstrip() + "\n"
+    return "\n\n".join([heads[0], *(f"{section}:\n{text.rstrip()}" for section, text in sections.items() if text)])

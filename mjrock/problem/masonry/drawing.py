@@ -60,8 +60,8 @@ class Touch(NamedTuple):
 
 def odd_damping(xi: Array) -> str:
     """What is odd about damping ratios of joints at the lowest frequency [-], in words, empty where nothing is."""
-    most = float(xi.max(initial=0.0))
-    return f"xi = {most:g} is {most:.0%} of critical; damping ratios are fractions" if most > 1 else ""
+    largest = float(xi.max(initial=0.0))
+    return f"xi = {largest:g} is {largest:.0%} of critical; damping ratios are fractions" if largest > 1 else ""
 
 
 def odd_frequency(xi: float, frequency: float, lowest: float) -> str:
@@ -117,8 +117,8 @@ def sizes_in_errors(drawn: Mapping[str, Array], turn: Array) -> Iterator[None]:
     except ValueError as error:
         turned = {name: np.abs(turn) @ np.ptp(places, axis=0) for name, places in drawn.items() if len(places)}
         sizes = {name: float(np.linalg.norm(extents)) for name, extents in turned.items()}
-        odd = odd_sizes({name: size for name, size in sizes.items() if 0 < size < np.inf})
-        raise ValueError(f"{error}; {odd}" if odd else str(error)) from None
+        doubt = odd_sizes({name: size for name, size in sizes.items() if 0 < size < np.inf})
+        raise ValueError(f"{error}; {doubt}" if doubt else str(error)) from None
 
 
 def odd_axis(blocks: Sequence[AnyBlock], joints: Sequence[SpaceJoint], ground: bool) -> str:
@@ -206,17 +206,17 @@ def along_lines(blocks: Sequence[AnyBlock], joints: Sequence[Joint | SpaceJoint]
     """
     touches = []
     for i, j in not_joined(blocks, joints, tolerance).tolist():
-        for one, other in product(blocks[i].solids, blocks[j].solids):
-            if where := _touch(one, other, tolerance, blocks[i].in_space):
+        for solid, other_solid in product(blocks[i].solids, blocks[j].solids):
+            if where := _touch(solid, other_solid, tolerance, blocks[i].in_space):
                 touches.append(Touch(i, j, where))
                 break
     return touches
 
 
-def _touch(one: Convex, other: Convex, tolerance: float, in_space: bool) -> str:
+def _touch(solid: Convex, other_solid: Convex, tolerance: float, in_space: bool) -> str:
     """Where two convex bodies touch without a common face, empty where they do not."""
-    axes = np.concatenate([one.normals, other.normals, edge_separating_axes(one, other)])
-    along, beside = one.corners @ axes.T, other.corners @ axes.T
+    axes = np.concatenate([solid.normals, other_solid.normals, edge_separating_axes(solid, other_solid)])
+    along, beside = solid.corners @ axes.T, other_solid.corners @ axes.T
     gap = np.maximum(beside.min(axis=0) - along.max(axis=0), along.min(axis=0) - beside.max(axis=0))
     if abs(gap.max()) > tolerance:
         return ""
@@ -250,13 +250,13 @@ def smallest_gap(
     low, high = (np.array([end(block.corners, axis=0) for block in blocks]) for end in (np.min, np.max))
     gaps = np.array([np.linalg.norm(np.maximum(0.0, np.maximum(low - high[i], low[i] - high)), axis=1) for i in loose])
     gaps[np.arange(len(loose)), loose] = np.inf
-    one, other = divmod(int(gaps.argmin()), len(blocks))
-    pair = f"{names[loose[one]]} and {names[other]}"
+    row, neighbour = divmod(int(gaps.argmin()), len(blocks))
+    pair = f"{names[loose[row]]} and {names[neighbour]}"
     touches = [touch for touch in along_lines(blocks, (), reach) if {touch.block, touch.other} & set(loose)]
     text = f"{touches_text(touches, names)}; " if touches else ""
     if set(loose) <= {i for touch in touches for i in (touch.block, touch.other)}:
         return text.removesuffix("; ")
-    text += f"between the bounds of {pair} there are {gaps[one, other]:.3g} m"
+    text += f"between the bounds of {pair} there are {gaps[row, neighbour]:.3g} m"
     needed = needed_gap(loose, joints_within, reach)
     if needed is None:
         return f"{text}, and no gap up to {WIDEST_TOLERANCE:g} m joins all of them"
@@ -291,13 +291,13 @@ def split_faces(joints: Sequence[Joint | SpaceJoint], blocks: Sequence[AnyBlock]
     for joint in joints:
         if isinstance(joint, SpaceJoint) and len(blocks[joint.below].parts) == len(blocks[joint.above].parts) == 1:
             normals[joint.below, joint.above].append(joint.normal)
-    odd = []
-    for pair, each in normals.items():
-        if len(each) > 1 and (np.array(each) @ np.transpose(each) - np.eye(len(each))).max() > ALIKE:
-            odd.append(f"{names[pair[0]]} and {names[pair[1]]}")
-    if not odd:
+    split = []
+    for pair, group in normals.items():
+        if len(group) > 1 and (np.array(group) @ np.transpose(group) - np.eye(len(group))).max() > ALIKE:
+            split.append(f"{names[pair[0]]} and {names[pair[1]]}")
+    if not split:
         return ""
     return (
-        f"{len(odd)} pairs of blocks meet along a face that is split into parts which are nearly parallel, such as "
-        f"{named(odd)}: vertices lie off the planes of their faces; round them, or draw the faces plane"
+        f"{len(split)} pairs of blocks meet along a face that is split into parts which are nearly parallel, such as "
+        f"{named(split)}: vertices lie off the planes of their faces; round them, or draw the faces plane"
     )

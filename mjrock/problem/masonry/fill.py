@@ -157,18 +157,18 @@ class Fill:
             require_within("at", float(places[np.abs(places - 0.5 * (low + high)).argmin()]), low, high, "m")
         half = 0.5 * require_within("width", width, 0.0, 100.0, "m")
         loads = list[Load]()
-        for i, (each, place) in enumerate(zip(forces.tolist(), places.tolist(), strict=True)):
+        for i, (axle_force, place) in enumerate(zip(forces.tolist(), places.tolist(), strict=True)):
             name = "force" if len(forces) == 1 else f"force[{i}]"
-            axle = Axle(require_within(name, each, 1e-3, 1e9, "N"), place, 2 * half, self.top)
+            axle = Axle(require_within(name, axle_force, 1e-3, 1e9, "N"), place, 2 * half, self.top)
             if place not in above:
                 continue
-            borne = self._under(faces, axle)
+            borne = self._loads_under(faces, axle)
             if not borne:
                 raise ValueError(f"at = {place:g} m lies above a gap between the faces; give places above the faces")
             loads += borne
         return tuple(loads)
 
-    def _under(self, faces: list[Bearing], axle: Axle) -> list[Load]:
+    def _loads_under(self, faces: list[Bearing], axle: Axle) -> list[Load]:
         """One axle as it presses on the faces."""
         ends, at, half = np.concatenate([face.ends for face in faces]), axle.at, 0.5 * axle.width
         low, high = (self._reached(ends, at, side, half) for side in (-1, 1))

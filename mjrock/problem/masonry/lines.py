@@ -105,17 +105,17 @@ def lines_of(
     for number, (joint, count) in enumerate(zip(joints, counts, strict=True)):
         k_joint, exact = k_n[number], bonded is not None and bonded[number]
         if isinstance(joint, Joint):
-            spots = list(_on_edge(joint, count, k_joint, exact))
+            spots = list(_spots_on_edge(joint, count, k_joint, exact))
         else:
             faces = [blocks[i].sides[j].corners for i, j in zip((joint.below, joint.above), joint.sides, strict=True)]
             shape = joint.flat.tobytes(), count, exact
             if shape not in divided:
                 divided[shape] = sectioned(joint.flat, count) if exact else spread(joint.flat, count)
             flat, areas = divided[shape]
-            spots = _on_face(joint, faces, flat, k_joint * areas)
+            spots = _spots_on_face(joint, faces, flat, k_joint * areas)
         below, above, upwards = blocks[joint.below], blocks[joint.above], joint.normal
         vertical = mirrored and abs(upwards[-1]) < LEVEL and not below.fixed
-        beside = _outer(distances[joint.above], distances[joint.below]) if vertical else ()
+        beside = _is_outer(distances[joint.above], distances[joint.below]) if vertical else ()
         alike = _have_corners(below, spots) == _have_corners(above, spots) if beside else ()
         for i, spot in enumerate(spots):
             turns: tuple[bool, ...] = (spot.overhangs and not below.fixed,)
@@ -130,7 +130,7 @@ def lines_of(
     return Lines(joint_of, body, face, np.array(at), np.array(normal), np.array(k))
 
 
-def _outer(above: float, below: float) -> tuple[bool, ...]:
+def _is_outer(above: float, below: float) -> tuple[bool, ...]:
     """Whether the point of a joint is on the block below, as that is farther from the middle of the masonry, apart from
     heights [m]. Both answers where the two blocks are as far."""
     return (False, True) if abs(below - above) <= EDGE_WITHIN else (below > above,)
@@ -142,7 +142,7 @@ def _have_corners(block: AnyBlock, spots: Sequence[Spot]) -> Flags:
     return np.asarray(np.abs(block.corners - places[:, None]).max(axis=2).min(axis=1) < EDGE_WITHIN)
 
 
-def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[Spot]:
+def _spots_on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[Spot]:
     """Places of the lines of a joint, evenly from end to end.
 
     The outer two have half the tributary width, or in a joint that is `exact` less, see `exact_shares`.
@@ -154,7 +154,7 @@ def _on_edge(joint: Joint, points: int, k_n: float, exact: bool) -> Iterator[Spo
         yield Spot(joint.middle + place * joint.along, k_n * joint.length * width, overhangs)
 
 
-def _on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -> list[Spot]:
+def _spots_on_face(joint: SpaceJoint, faces: Sequence[Array], flat: Array, k: Array) -> list[Spot]:
     """The same of the points of a joint in space, which lie `flat` in its plane, and have the stiffness k [N/m]. Those
     at its corners may be of the block below alone, and those on an edge of the face below that lies within the face
     above are."""

@@ -214,8 +214,8 @@ class Masonry(Constructors, NotebookPicture):
             keep(self, law=required_law(law))
         if len(counts := set(self.table.points.tolist())) == 1:
             keep(self, points=counts.pop())
-        for odd in self._remarks():
-            warn_of(odd, Implausible)
+        for doubt in self._remarks():
+            warn_of(doubt, Implausible)
 
     def __repr__(self) -> str:
         corners = np.concatenate([self.blocks[i].corners for i in self.free])
@@ -338,9 +338,9 @@ class Masonry(Constructors, NotebookPicture):
             by_name |= {"law": None, **damping}
         if not by_name:
             return self
-        same = object.__new__(type(self))
-        keep(same, **{each.name: getattr(self, each.name) for each in fields(self)} | by_name)
-        return same
+        copy = object.__new__(type(self))
+        keep(copy, **{entry.name: getattr(self, entry.name) for entry in fields(self)} | by_name)
+        return copy
 
     def _by_name(self, values: Iterable[Any]) -> ByName:
         return ByName(tuple((joint.name, value) for joint, value in zip(self.joints, values, strict=True)))
@@ -410,15 +410,15 @@ class Masonry(Constructors, NotebookPicture):
     def _remarks(self) -> list[str]:
         """What is odd about it, in words, empty where nothing is. Its table is made, and so checked, for that."""
         xi, frequency = self.table.xi, self.table.frequency
-        at_lowest, odd = np.isnan(frequency), ""
+        at_lowest, doubt = np.isnan(frequency), ""
         if self.law is None and not at_lowest.all():
             i = int(np.where(at_lowest, -1.0, xi / frequency).argmax())
             lowest = self._lowest_frequency if xi[i] else 0.0
-            odd = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
+            doubt = odd_frequency(float(xi[i]), float(frequency[i]), lowest)
         sizes, faces = self._odd_sizes, split_faces(self.joints, self.blocks, self.names)
         touches = along_lines(self.blocks, self.joints, self.tolerance)
         unjoined = f"without a joint {touches_text(touches, self.names)}" if touches else ""
-        return [text for text in (odd, odd_damping(xi[at_lowest]), sizes, faces, unjoined) if text]
+        return [text for text in (doubt, odd_damping(xi[at_lowest]), sizes, faces, unjoined) if text]
 
     @classmethod
     def stack(
@@ -549,8 +549,8 @@ class Masonry(Constructors, NotebookPicture):
                     corners = np.concatenate([block.corners for block in blocks])
                     blocks.insert(0, ground_below(corners.min(axis=0), corners.max(axis=0)))
                 masonry = cls(blocks, **options)._touching()
-        if file.up is None and (odd := odd_axis(masonry.blocks, masonry.space_joints, file.ground)):
-            warn_of(odd, Implausible)
+        if file.up is None and (doubt := odd_axis(masonry.blocks, masonry.space_joints, file.ground)):
+            warn_of(doubt, Implausible)
         return masonry
 
     def convex_in_space(self, what: str) -> list[Polyhedron]:
@@ -586,8 +586,8 @@ class Masonry(Constructors, NotebookPicture):
             unjoined = not_joined(self.blocks, self.joints, gap)
             with suppress(OverlapError):
                 nearly = self._joints_with(tolerance, gap, unjoined)
-                if odd := nearly_joined([joint.name for joint in nearly], gap, self.tolerance):
-                    warn_of(odd, Implausible)
+                if doubt := nearly_joined([joint.name for joint in nearly], gap, self.tolerance):
+                    warn_of(doubt, Implausible)
         return self
 
 
@@ -602,8 +602,8 @@ def blocks_of_one_kind(blocks: Sequence[AnyBlock]) -> tuple[AnyBlock, ...]:
         if not isinstance(block, Polygon | Polyhedron | Compound):
             raise TypeError(f"blocks[{i}] = {shown(block)} is not a Polygon, Polyhedron or Compound")
         if block.in_space != blocks[0].in_space:
-            which = [f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}" for b in (block, blocks[0])]
-            raise TypeError(f"blocks[{i}] is a {which[0]}, and blocks[0] is a {which[1]}; give blocks of one kind")
+            kinds = [f"{type(b).__name__} {'in space' if b.in_space else 'of the plane'}" for b in (block, blocks[0])]
+            raise TypeError(f"blocks[{i}] is a {kinds[0]}, and blocks[0] is a {kinds[1]}; give blocks of one kind")
     free = sum(not block.fixed for block in blocks)
     name = names_of(blocks)[0] if blocks else ""
     remedy = f"; of a file fixed=[{name!r}] names a support, and ground=True puts ground under all" * (free > 0)

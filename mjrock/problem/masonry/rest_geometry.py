@@ -28,8 +28,8 @@ class MasonryRestGeometry:
         """The blocks in their order; those of the plane are prisms of their length."""
         blocks, body = self.masonry.blocks, free_numbers(self.masonry.blocks).tolist()
         return tuple(
-            Solid(name, i, body[i], rest, block.solids, block.inside, block.sides, block.size)
-            for i, (name, block, rest) in enumerate(
+            Solid(name, i, body[i], centroid, block.solids, block.inside, block.sides, block.size)
+            for i, (name, block, centroid) in enumerate(
                 zip(self.masonry.names, blocks, in_space(self.centroids), strict=True)
             )
         )
@@ -66,7 +66,7 @@ class MasonryRestGeometry:
         if self.masonry.in_space:
             return tuple(zip(Face.in_space(below), Face.in_space(above), strict=True))
         edges = zip(self.masonry.plane_joints, below, above, strict=True)
-        return tuple((_edge(one, joint, 1.0), _edge(other, joint, -1.0)) for joint, one, other in edges)
+        return tuple((_edge(lower, joint, 1.0), _edge(upper, joint, -1.0)) for joint, lower, upper in edges)
 
 
 def _edge(side: Side, joint: Joint, sense: float) -> Face:

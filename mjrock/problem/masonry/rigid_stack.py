@@ -53,14 +53,14 @@ class RigidStack:
         """The stack without its side stop; its joints have the same names, and the same properties but damping."""
         if not self.sides:
             return self.masonry
-        whole, names = self.masonry, [joint.name for joint in self.masonry.joints]
-        stops = {whole.joints[i].below for i in self.sides}
-        blocks = [replace(block, name=name) for block, name in zip(whole.blocks, whole.names, strict=True)]
+        masonry, names = self.masonry, [joint.name for joint in self.masonry.joints]
+        stops = {masonry.joints[i].below for i in self.sides}
+        blocks = [replace(block, name=name) for block, name in zip(masonry.blocks, masonry.names, strict=True)]
         return replace(
-            whole,
+            masonry,
             blocks=tuple(block for i, block in enumerate(blocks) if i not in stops),
-            k_n=ByName(tuple(zip(names, whole.joint_stiffness.tolist(), strict=True))),
-            friction=ByName(tuple(zip(names, whole.joint_friction.tolist(), strict=True))),
+            k_n=ByName(tuple(zip(names, masonry.joint_stiffness.tolist(), strict=True))),
+            friction=ByName(tuple(zip(names, masonry.joint_friction.tolist(), strict=True))),
             xi=0.0,
             law=None,
         )

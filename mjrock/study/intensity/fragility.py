@@ -110,13 +110,13 @@ class Fragility(NotebookPicture):
         """
         confidence = require_within("confidence", confidence, 0.0, 1.0)
         x = _intensities(intensity)
-        low, high = (self._of_covariance if self.resamples is None else self._of_resamples)(x, confidence)
+        low, high = (self._covariance_band if self.resamples is None else self._resampled_band)(x, confidence)
         medians, dispersions = self.median_interval(confidence), self.dispersion_interval(confidence)
         outer = np.stack([ndtr(score_of(x, median, dispersion)) for median in medians for dispersion in dispersions])
         bounds = outer.min(axis=0), outer.max(axis=0)
         return np.clip(low, *bounds), np.clip(high, *bounds)
 
-    def _of_resamples(self, x: Array, confidence: float) -> tuple[Array, Array]:
+    def _resampled_band(self, x: Array, confidence: float) -> tuple[Array, Array]:
         """Percentiles of the reflected curves at intensities [-], each of the shape of `x`."""
         shares = ndtr(score_of(x[..., None], *self._reflected_curves(confidence).T))
         low, high = np.percentile(shares, (50 * (1 - confidence), 50 * (1 + confidence)), axis=-1)
@@ -127,15 +127,15 @@ class Fragility(NotebookPicture):
         their 90 % interval requires."""
         assert self.resamples is not None
         fitted, drawn = np.log([self.median, self.dispersion]), _log(self.resamples)
-        from_fit = _wider(SPREAD, self.groups) * (fitted - drawn)
+        from_fit = _widening(SPREAD, self.groups) * (fitted - drawn)
         low, high = reflected(fitted[1], drawn[:, 1], SPREAD, self.groups) - fitted[1]
-        least, most = _log(np.array(self.dispersion_interval(SPREAD))) - fitted[1]
+        required_low, required_high = _log(np.array(self.dispersion_interval(SPREAD))) - fitted[1]
         if high > low:
-            from_fit[:, 1] = least + (most - least) / (high - low) * (from_fit[:, 1] - low)
+            from_fit[:, 1] = required_low + (required_high - required_low) / (high - low) * (from_fit[:, 1] - low)
         with np.errstate(over="ignore"):
-            return np.exp(fitted + _wider(confidence, self.groups) / _wider(SPREAD, self.groups) * from_fit)
+            return np.exp(fitted + _widening(confidence, self.groups) / _widening(SPREAD, self.groups) * from_fit)
 
-    def _of_covariance(self, x: Array, confidence: float) -> tuple[Array, Array]:
+    def _covariance_band(self, x: Array, confidence: float) -> tuple[Array, Array]:
         """The normal approximation of the score at intensities, as shares [-], each of the shape of `x`."""
         score = score_of(x, self.median, self.dispersion)
         certain = np.isinf(score)  # no damage without motion, and none is spared by an infinite one
@@ -201,12 +201,12 @@ class Fragility(NotebookPicture):
             write_text(require_path("path", path), text)
         return text
 
-    def _interval(self, which: int, value: float, confidence: float) -> tuple[float, float]:
+    def _interval(self, column: int, value: float, confidence: float) -> tuple[float, float]:
         confidence = require_within("confidence", confidence, 0.0, 1.0)
         if self.resamples is not None:
-            low, high = reflected(math.log(value), _log(self.resamples[:, which]), confidence, self.groups)
+            low, high = reflected(math.log(value), _log(self.resamples[:, column]), confidence, self.groups)
             return float(np.exp(low)), float(np.exp(high))
-        reach = float(ndtri(0.5 + 0.5 * confidence)) * math.sqrt(self.covariance[which][which])
+        reach = float(ndtri(0.5 + 0.5 * confidence)) * math.sqrt(self.covariance[column][column])
         return value * math.exp(-reach), value * math.exp(reach)
 
 
@@ -248,7 +248,7 @@ def fit_fragility(
     """
     x, fell = require_reals("intensity", intensity, "one intensity of each run"), _flags(overturned)
     _require_fit(x, fell)
-    fit = _likeliest(x, fell)
+    fit = _likeliest_curve(x, fell)
     low, high = fit.tried
     if not low <= fit.median <= high:
         warn_of(
@@ -264,8 +264,8 @@ def fit_fragility(
     draws = drawn(names, resamples, seed)
     count, batch = len(draws), max(1, MOST_VALUES // len(runs))
     weights = (draws[i : i + batch] @ of_groups for i in range(0, count, batch))
-    fits = [resampled(np.log(runs.real), runs.imag > 0, each) for each in weights]
-    curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(each for _, each in fits)
+    fits = [resampled(np.log(runs.real), runs.imag > 0, batch_weights) for batch_weights in weights]
+    curves, without = np.concatenate([pairs for pairs, _ in fits]), sum(lacking for _, lacking in fits)
     curves.setflags(write=False)
     if without > MOST_WITHOUT * count:
         warn_of(
@@ -275,7 +275,7 @@ def fit_fragility(
     return replace(fit, groups=names, resamples=curves, without_curve=without)
 
 
-def _likeliest(x: Array, fell: Flags) -> Fragility:
+def _likeliest_curve(x: Array, fell: Flags) -> Fragility:
     """The curve of greatest likelihood, the runs taken as independent."""
     log_x = np.log(x)
     ((level, slope),) = probit(log_x, fell, np.ones((1, len(x))))
@@ -303,16 +303,16 @@ def _flags(overturned: ArrayLike) -> Flags:
     return np.asarray(values, dtype=bool)
 
 
-def group_numbers(labels: NDArray[np.generic], least: int = FEWEST_GROUPS) -> tuple[int, Integers]:
+def group_numbers(labels: NDArray[np.generic], fewest: int = FEWEST_GROUPS) -> tuple[int, Integers]:
     """How many groups there are, and the number of that of each value.
 
     Raises:
         ValueError: for too few for an interval.
     """
     names, group = np.unique(labels, return_inverse=True)
-    if len(names) < least:
+    if len(names) < fewest:
         raise ValueError(
-            f"the number of groups is {len(names)} (without groups each value is one); the valid range is {least} or "
+            f"the number of groups is {len(names)} (without groups each value is one); the valid range is {fewest} or "
             "more: fewer give no interval that can be trusted. Run more records, or report the single values and their "
             "range"
         )
@@ -389,9 +389,9 @@ def resampled(log_x: Array, fell: Flags, weights: Array) -> tuple[Array, int]:
     highest = np.where(drawn & ~fell, log_x, -np.inf).max(axis=1)
     curves = lowest < highest
     fits = np.zeros((len(weights), 2))
-    for which, fit in ((curves, probit), (~curves, _penalised)):
-        if which.any():
-            fits[which] = fit(log_x, fell, weights[which])
+    for selected, fit in ((curves, probit), (~curves, _penalised)):
+        if selected.any():
+            fits[selected] = fit(log_x, fell, weights[selected])
     level, slope = fits.T
     rises = slope > 0
     slope = np.where(rises, slope, 1.0)
@@ -471,7 +471,7 @@ def score_of(intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> 
 
 def reflected(value: float, drawn: Array, confidence: float, groups: int | None) -> tuple[Array, Array]:
     """The basic bootstrap interval of resamples, shape (m,): they lie about the estimate as it does about the truth."""
-    wider = _wider(confidence, groups)
+    wider = _widening(confidence, groups)
     ends = 50 * (1 - confidence), 50 * (1 + confidence)
     low, high = np.percentile(drawn, ends, method="nearest")
     with np.errstate(invalid="ignore"):
@@ -480,7 +480,7 @@ def reflected(value: float, drawn: Array, confidence: float, groups: int | None)
     return np.asarray(first), np.asarray(last)
 
 
-def _wider(confidence: float, groups: int | None) -> float:
+def _widening(confidence: float, groups: int | None) -> float:
     """By how much an interval is wider than its resamples [-].
 
     Resamples of n groups spread by sqrt((n - 1) / n) too little, and the quantile of few is that of Student's t; the
@@ -513,13 +513,13 @@ def lost(rows: Iterable[Row]) -> Flags:
     """
     if isinstance(rows, Mapping) or not is_iterable(rows):
         raise TypeError(f"rows = {shown(rows)} are not rows of a campaign")
-    found = []
+    losses = []
     for i, row in enumerate(rows):
         if not isinstance(row, Mapping):
             raise TypeError(f"rows[{i}] = {shown(row)} is not a row of a campaign")
         outcome, peak = row.get("outcome"), row.get("peak_over_alpha")
         if peak is None and outcome in OUTCOMES and isinstance(row.get("fallen"), int):
-            found.append(row["fallen"] > 0)
+            losses.append(row["fallen"] > 0)
             continue
         if not isinstance(outcome, str) or outcome not in OUTCOMES or peak is None:
             raise ValueError(
@@ -532,8 +532,8 @@ def lost(rows: Iterable[Row]) -> Flags:
         )
         tied = any(TIE_FORCE.fullmatch(str(name)) and value is not None for name, value in row.items())
         leans = tied and outcome == Outcome.TIME_ENDED.value and peak >= 1.0
-        found.append(outcome == Outcome.OVERTURNED.value or leans or inwards >= 1.0)
-    return np.array(found, dtype=bool)
+        losses.append(outcome == Outcome.OVERTURNED.value or leans or inwards >= 1.0)
+    return np.array(losses, dtype=bool)
 
 
 def fit_capacities(
@@ -567,8 +567,8 @@ def fit_capacities(
     means = weights @ log_c / total
     squares = np.maximum((weights * (log_c - means[:, None]) ** 2).sum(axis=1) / (total - 1), 0.0)
     flat = squares == 0
-    found = np.stack([np.exp(means), np.sqrt(np.where(flat, squares[~flat].min(initial=1.0), squares))], axis=1)
-    found.setflags(write=False)
+    curves = np.stack([np.exp(means), np.sqrt(np.where(flat, squares[~flat].min(initial=1.0), squares))], axis=1)
+    curves.setflags(write=False)
     s, n = float(log_c.std(ddof=1)), len(log_c)
     return Fragility(
         median=math.exp(log_c.mean()),
@@ -576,7 +576,7 @@ def fit_capacities(
         covariance=((s * s / n, 0.0), (0.0, 0.5 / (n - 1))),
         count=n,
         groups=names,
-        resamples=found,
+        resamples=curves,
         tried=(math.exp(log_c.min()), math.exp(log_c.max())),
         without_curve=int(flat.sum()),
     )
@@ -638,14 +638,14 @@ def paired_ratio(
     means = np.bincount(group, ratios) / np.bincount(group)
     reach = float(stdtrit(names - 1, 0.5 + 0.5 * confidence)) * means.std(ddof=1) / math.sqrt(names)
     ends = means.mean() + reach * np.array([0.0, -1.0, 1.0])
-    ratio, low, high, least, most = np.exp([*ends, ratios.min(), ratios.max()]).tolist()
-    return PairedRatio(ratio, low, high, least, most, len(ratios), names, confidence)
+    ratio, low, high, lowest, highest = np.exp([*ends, ratios.min(), ratios.max()]).tolist()
+    return PairedRatio(ratio, low, high, lowest, highest, len(ratios), names, confidence)
 
 
 def _logarithms(name: str, values: ArrayLike) -> Array:
     """Logarithms of positive numbers."""
-    made = require_row(name, values, "capacity")
-    bad = np.flatnonzero(~(made > 0))
+    numbers = require_row(name, values, "capacity")
+    bad = np.flatnonzero(~(numbers > 0))
     if bad.size:
-        raise ValueError(f"{name}[{bad[0]}] = {made[bad[0]]:g} is outside the valid range, which is above 0")
-    return np.log(made)
+        raise ValueError(f"{name}[{bad[0]}] = {numbers[bad[0]]:g} is outside the valid range, which is above 0")
+    return np.log(numbers)

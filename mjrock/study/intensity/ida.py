@@ -79,11 +79,11 @@ class IncrementalAnalysis:
         Raises:
             TypeError, ValueError: as `fit_fragility`, and for groups of another number.
         """
-        own = labels_for(groups, len(self.records))
+        labels = labels_for(groups, len(self.records))
         used = self.scales > 0
         fell = np.array([lost(rows) for rows in self.rows]).reshape(self.peaks.shape)[:, used]
         levels = self.scales[used]
-        runs = np.tile(levels, len(own)), fell.ravel(), np.repeat(own, len(levels))
+        runs = np.tile(levels, len(labels)), fell.ravel(), np.repeat(labels, len(levels))
         return fit_fragility(*runs, resamples=resamples, seed=seed)
 
     def percentiles(self, shares: Sequence[float] = (16, 50, 84)) -> Array:
@@ -268,11 +268,11 @@ def lowest(falls: Callable[[float], bool], low: float, high: float, below: int, 
     Raises:
         ValueError: if it falls at LEAST_SCALE times `low` or less.
     """
-    scale, stood, least = low, 0, LEAST_SCALE * low
+    scale, stood, limit = low, 0, LEAST_SCALE * low
     while stood < below:
         scale /= 1 + spacing
         if falls(scale):
-            if scale < least:
+            if scale < limit:
                 raise ValueError(f"the wall overturns at scales down to {scale:g}; no capacity is found")
             high, stood = scale, -1
         else:
@@ -377,23 +377,23 @@ class Capacity:
 
         low, high = halved(falls, *bracket(falls, self.start), max(self.tolerance, self.spacing))
         low, high = lowest(falls, low, high, self.below, self.spacing)
-        least, (low, high) = low / (1 + self.spacing) ** self.below, halved(falls, low, high, self.tolerance)
+        lowest_scale, (low, high) = low / (1 + self.spacing) ** self.below, halved(falls, low, high, self.tolerance)
         if history is not None:
             self.scaled(high)(history)
         peak = self.peak
         above = max((scale for scale, fell in tried.items() if scale > high and not fell), default=None)
         values = (
-            self.solver, self.analysis.law, high * peak, high, low * peak, least * peak,
-            None if above is None else above * peak, len(tried), self._message(low, high, least, above),
+            self.solver, self.analysis.law, high * peak, high, low * peak, lowest_scale * peak,
+            None if above is None else above * peak, len(tried), self._message(low, high, lowest_scale, above),
         )  # fmt: skip
         return dict(zip(self.COLUMNS, values, strict=True))
 
-    def _message(self, low: float, high: float, least: float, above: float | None) -> str:
+    def _message(self, low: float, high: float, lowest_scale: float, above: float | None) -> str:
         """What is known, in words: the scales between which the outcome changes, and what was tried beside them."""
         falls = subject_of(self.analysis.case).FALLS
         message = f"The {falls} at {high * self.peak:.4g} g and stands at {low * self.peak:.4g} g"
         if self.below:
-            down = f"{100 * self.spacing:.3g} % apart, down to {least * self.peak:.4g} g"
+            down = f"{100 * self.spacing:.3g} % apart, down to {lowest_scale * self.peak:.4g} g"
             message += f" and at all {self.below} lower intensities that were tried, {down}."
         else:
             message += ". It is an edge: whether a weaker intensity does so too was not looked at."

@@ -48,12 +48,12 @@ class OverturningMap(NotebookPicture):
     @property
     def lowest(self) -> Array:
         """The lowest amplitude at which it overturns under pulses of each period [m/s2], NaN for none, shape (p,)."""
-        return self._first(self.endings != STOOD)
+        return self._first_amplitude(self.endings != STOOD)
 
     @property
     def lowest_without_impact(self) -> Array:
         """The same of overturning without impact [m/s2], NaN for none and for masonry, shape (p,)."""
-        return self._first(self.endings == FELL_WITHOUT_IMPACT)
+        return self._first_amplitude(self.endings == FELL_WITHOUT_IMPACT)
 
     @property
     def islands(self) -> Array:
@@ -61,8 +61,8 @@ class OverturningMap(NotebookPicture):
         fell = np.logical_or.accumulate(self.endings != STOOD, axis=1)
         return np.asarray(fell & (self.endings == STOOD))
 
-    def _first(self, found: Array) -> Array:
-        return np.where(found.any(axis=1), self.amplitudes[found.argmax(axis=1)], math.nan)
+    def _first_amplitude(self, flags: Array) -> Array:
+        return np.where(flags.any(axis=1), self.amplitudes[flags.argmax(axis=1)], math.nan)
 
     def table(self) -> str:
         """A line for each period: from which amplitude it overturns, and in which ranges it stands above, as text."""
@@ -73,8 +73,8 @@ class OverturningMap(NotebookPicture):
         rows: list[tuple[str, ...]] = [heads]
         firsts = zip(self.periods, self.lowest, self.lowest_without_impact, self.islands, strict=True)
         for period, low, free, island in firsts:
-            again = [(each[0], each[-1]) for each in _runs(self.amplitudes, island)]
-            ranges = ", ".join(f"{a:.4g}" if a == b else f"{a:.4g} to {b:.4g}" for a, b in again)
+            standing = [(run[0], run[-1]) for run in _runs(self.amplitudes, island)]
+            ranges = ", ".join(f"{a:.4g}" if a == b else f"{a:.4g} to {b:.4g}" for a, b in standing)
             edges = ("-" if math.isnan(edge) else f"{edge:.4g}" for edge in (low, free))
             rows.append((f"{period:.4g}", *edges, ranges or "-"))
         return rows

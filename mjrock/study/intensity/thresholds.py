@@ -102,7 +102,7 @@ class Thresholds(NotebookPicture):
         return html_of(repr(self).strip("<>"), self._rows())
 
     def __repr__(self) -> str:
-        several = sum(len(each) > 1 or any(not math.isnan(it.stands_above) for it in each) for each in self.islands)
+        several = sum(len(row) > 1 or any(not math.isnan(part.stands_above) for part in row) for row in self.islands)
         return (
             f"<Thresholds of {len(self.records)} records at {len(self.scales)} scales from {self.scales[0]:g} to "
             f"{self.scales[-1]:g}: {int(np.isfinite(self.lowest).sum())} make it fall, {several} not monotonically>"
@@ -183,32 +183,32 @@ def _edges(tried: Mapping[float, bool]) -> Iterator[tuple[float, float]]:
 
 def _ranges(tried: Mapping[float, bool]) -> list[Island]:
     """The ranges of one repeat."""
-    found, before = list[Island](), math.nan
+    islands, before = list[Island](), math.nan
     for scale in sorted(tried):
         if not tried[scale]:
             before = scale
-            if found and math.isnan(found[-1].stands_above):
-                last = found[-1]
-                found[-1] = last._replace(stands_above=scale, upper=(last.falls_to, scale))
-        elif found and math.isnan(found[-1].stands_above):
-            found[-1] = found[-1]._replace(falls_to=scale, upper=(scale, scale))
+            if islands and math.isnan(islands[-1].stands_above):
+                last = islands[-1]
+                islands[-1] = last._replace(stands_above=scale, upper=(last.falls_to, scale))
+        elif islands and math.isnan(islands[-1].stands_above):
+            islands[-1] = islands[-1]._replace(falls_to=scale, upper=(scale, scale))
         else:
             below = scale if math.isnan(before) else before
-            found.append(Island(scale, scale, before, math.nan, (below, scale), (scale, scale), 1.0))
-    return found
+            islands.append(Island(scale, scale, before, math.nan, (below, scale), (scale, scale), 1.0))
+    return islands
 
 
 def _islands(repeats: Sequence[Mapping[float, bool]]) -> tuple[Island, ...]:
     """The ranges of the first repeat, with the range of their edges over all repeats."""
     islands, *others = map(_ranges, repeats)
-    found = []
+    merged = []
     for island in islands:
-        overlapping = [[each for each in other if _meets(island, each)] for other in others]
+        overlapping = [[candidate for candidate in repeat if _meets(island, candidate)] for repeat in others]
         firsts = [island.lower, *(matches[0].lower for matches in overlapping if matches)]
         lasts = [island.upper, *(matches[-1].upper for matches in overlapping if matches)]
         lower, upper = ((min(a for a, _ in bands), max(b for _, b in bands)) for bands in (firsts, lasts))
-        found.append(island._replace(lower=lower, upper=upper, seen=len(firsts) / len(repeats)))
-    return tuple(found)
+        merged.append(island._replace(lower=lower, upper=upper, seen=len(firsts) / len(repeats)))
+    return tuple(merged)
 
 
 def _meets(island: Island, other: Island) -> bool:

@@ -225,9 +225,9 @@ class Code:
             require_one_of("linear.state", self.linear.state, self.states)
         for key in self.steps:
             require_one_of("a key of steps", key, CHECK_STEPS)
-            for of in self.states if key in (*OF_LIMIT_STATE, "ground_ratio") else [""]:
-                self.step(key, of)
-                self.formula(key, of, str)
+            for state in self.states if key in (*OF_LIMIT_STATE, "ground_ratio") else [""]:
+                self.step(key, state)
+                self.formula(key, state, str)
 
     def __repr__(self) -> str:
         return f"<Code {self.name}: {', '.join(self.states)}>"
@@ -277,7 +277,7 @@ class Code:
         if self.linear is not None:
             known["BEHAVIOUR"] = written(self.linear.behaviour)
         try:
-            return IN_FORMULA.sub(lambda found: known[found[0]], self.steps[key].formula)
+            return IN_FORMULA.sub(lambda match: known[match[0]], self.steps[key].formula)
         except KeyError as error:
             raise ValueError(f"steps.{key}.formula has {error}, which the code does not have there") from None
 
@@ -305,15 +305,15 @@ class Code:
 
 def _parts_of(table: dict[str, Any]) -> dict[str, Any]:
     """The arguments of a `Code` that a file gives."""
-    parts = _known("the file", Code, table)
+    parts = _checked_table("the file", Code, table)
     kinds: dict[str, Callable[..., object]] = {"linear": LinearRule, "damage": DamageRule, "dynamic": DynamicRule}
     kinds["confidence"] = ConfidenceRule
     for name in kinds.keys() & parts.keys():
-        parts[name] = _made(name, kinds[name], parts[name])
+        parts[name] = _make_part(name, kinds[name], parts[name])
     kinds = {"states": CodeLimitState, "steps": CodeStep}
     for name, kind in kinds.items():
         require_kind(name, parts[name], dict)
-        parts[name] = {key: _made(f"{name}.{key}", kind, entry) for key, entry in parts[name].items()}
+        parts[name] = {key: _make_part(f"{name}.{key}", kind, entry) for key, entry in parts[name].items()}
     require_kind("texts", parts["texts"], dict)
     for name, text in [*parts["texts"].items(), *((f"steps.{key}", step.text) for key, step in parts["steps"].items())]:
         require_kind(name, text, dict)
@@ -322,27 +322,27 @@ def _parts_of(table: dict[str, Any]) -> dict[str, Any]:
     return parts
 
 
-def _made(name: str, kind: Callable[..., object], table: object) -> object:
+def _make_part(name: str, kind: Callable[..., object], table: object) -> object:
     """A part of a code, whose errors name the table of the file that has it."""
     require_kind(name, table, dict)
     try:
-        return kind(**_known(name, kind, dict(table)))  # type: ignore[call-overload]
+        return kind(**_checked_table(name, kind, dict(table)))  # type: ignore[call-overload]
     except (TypeError, ValueError) as error:
         raise type(error)(f"{name}: {error}") from None
 
 
-def _known(name: str, kind: Callable[..., object], table: dict[str, Any]) -> dict[str, Any]:
+def _checked_table(name: str, kind: Callable[..., object], table: dict[str, Any]) -> dict[str, Any]:
     """A table of the file whose entries are arguments of a class, with all that have no default."""
     arguments = {argument.name: argument for argument in fields(kind)}  # type: ignore[arg-type]
     for key in table:
         require_one_of(f"an entry of {name}", key, arguments)
-    missing = next((key for key, argument in arguments.items() if key not in table and _needed(argument)), None)
+    missing = next((key for key, argument in arguments.items() if key not in table and _is_needed(argument)), None)
     if missing is not None:
         raise ValueError(f"{name} has no {missing}")
     return table
 
 
-def _needed(argument: Field[object]) -> bool:
+def _is_needed(argument: Field[object]) -> bool:
     """Whether a field of a dataclass has no default."""
     return argument.default is argument.default_factory  # both are MISSING
 

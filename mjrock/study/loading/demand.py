@@ -34,10 +34,10 @@ def required_demands(demand: Demand | Mapping[str, Demand], code: Code | str = U
     if set(demands) - beside != set(code.states) - beside:
         needed = " and ".join(code.states)
         raise ValueError(f"demand has {', '.join(map(str, demands)) or 'none'}; a mapping needs {needed}")
-    for name, one in demands.items():
-        if not isinstance(one, GroundMotion) and not takes(one, 2):
+    for name, state_demand in demands.items():
+        if not isinstance(state_demand, GroundMotion) and not takes(state_demand, 2):
             place = f"demand[{name!r}]" if demands is demand else "demand"
-            raise TypeError(f"{place} = {shown(one)} is neither a GroundMotion nor a function S_De(T, xi)")
+            raise TypeError(f"{place} = {shown(state_demand)} is neither a GroundMotion nor a function S_De(T, xi)")
     return demands
 
 
@@ -65,7 +65,7 @@ def demanded_displacement(demand: Demand, period: float, damping: float, T_0: fl
     if isinstance(demand, SpectrumOfCode):
         return float(demand.displacement(period, damping))
     try:
-        found = require_real("demand(T, xi)", demand(period, damping))
+        displacement = require_real("demand(T, xi)", demand(period, damping))
     except (TypeError, ValueError) as error:
         raise type(error)(f"demand = {shown(demand)} gives no displacement for T, xi: {error}") from None
-    return require_within("demand(T, xi)", found, 0.0, 1e3, "m")
+    return require_within("demand(T, xi)", displacement, 0.0, 1e3, "m")

@@ -38,8 +38,8 @@ class Condition(NamedTuple):
     @property
     def label(self) -> str:
         """Which it is, in words."""
-        what = ", ".join(filter(None, (self.verdict.what, self.verdict.limit_state)))
-        return ": ".join(filter(None, (self.mechanism, what)))
+        check = ", ".join(filter(None, (self.verdict.what, self.verdict.limit_state)))
+        return ": ".join(filter(None, (self.mechanism, check)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -65,13 +65,13 @@ class Trial:
     @property
     def conditions(self) -> tuple[Condition, ...]:
         """Every condition of every check, or those of the method that counts."""
-        all_of_them = [Condition(name, one) for name, check in self.checks.items() for one in check.verdicts]
-        return tuple(one for one in all_of_them if self.method is None or one.verdict.what.startswith(self.method))
+        every = [Condition(name, verdict) for name, check in self.checks.items() for verdict in check.verdicts]
+        return tuple(check for check in every if self.method is None or check.verdict.what.startswith(self.method))
 
     @property
     def governs(self) -> Condition | None:
         """The condition with the least ratio; None where the value cannot be built."""
-        return min(self.conditions, key=lambda one: one.verdict.ratio, default=None)
+        return min(self.conditions, key=lambda condition: condition.verdict.ratio, default=None)
 
     @property
     def ratio(self) -> float:
@@ -81,12 +81,12 @@ class Trial:
     @property
     def holds(self) -> bool:
         """Whether every condition holds."""
-        return self.governs is not None and all(one.verdict.holds for one in self.conditions)
+        return self.governs is not None and all(condition.verdict.holds for condition in self.conditions)
 
     def __repr__(self) -> str:
         if self.governs is None:
             return f"<Trial {self.label}: {self.refused}>"
-        return f"<Trial {self.label}: {ratio_text(self.ratio)} {_word(self)}, {self.governs.label}>"
+        return f"<Trial {self.label}: {ratio_text(self.ratio)} {_verdict_word(self)}, {self.governs.label}>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -144,7 +144,7 @@ class Design(NotebookPicture):
                 rows.append((trial.label, "-", "-", trial.refused, ""))
             else:
                 last = trial.governs.label, trial.governs.verdict.clause
-                rows.append((trial.label, ratio_text(trial.ratio), _word(trial), *last))
+                rows.append((trial.label, ratio_text(trial.ratio), _verdict_word(trial), *last))
         return "\n".join([*aligned(rows, "<><<<"), self.sentence])
 
     @property
@@ -211,14 +211,14 @@ def design(
         raise TypeError(f"build = {shown(build)} is not a function of a value")
     if not is_iterable(values) or isinstance(values, str | Mapping):
         raise TypeError(f"values = {shown(values)} is not a sequence of values")
-    given = listed("values", values)
-    if not given:
+    candidates = listed("values", values)
+    if not candidates:
         raise ValueError("values is empty; at least one is needed")
     if demand is not None and (isinstance(demand, bool) or not isinstance(demand, int | float)):
         required_demands(demand, options.get("code", USUAL_CODE))
     if method is not None:
         require_one_of("method", method, METHODS)
-    trials = tuple(replace(_tried(build, value, demand, options), method=method) for value in given)
+    trials = tuple(replace(_trial_of(build, value, demand, options), method=method) for value in candidates)
     if any(trial.checks and not trial.conditions for trial in trials):
         raise ValueError(f"method = {method!r}: the checks have no condition of it")
     if not any(trial.checks for trial in trials):
@@ -226,12 +226,12 @@ def design(
     return Design(trials)
 
 
-def _tried(build: Callable[[Any], object], value: object, demand: object, options: Mapping[str, Any]) -> Trial:
+def _trial_of(build: Callable[[Any], object], value: object, demand: object, options: Mapping[str, Any]) -> Trial:
     """The checks of a value, or why there are none."""
     try:
         built = build(value)
         named = built if isinstance(built, Mapping) else {"": built}
-        checks = {name: _checked(value, one, demand, options) for name, one in named.items()}
+        checks = {name: _checked(value, mechanism, demand, options) for name, mechanism in named.items()}
     except ValueError as error:
         return Trial(value, label_of(value), {}, str(error))
     if not checks:
@@ -268,11 +268,11 @@ def _checked(value: object, built: Any, demand: Any, options: Mapping[str, Any])
 def label_of(value: object) -> str:
     """A value as a short text."""
     if isinstance(value, Mapping):
-        return ", ".join(f"{name} {label_of(one)}" for name, one in value.items())
+        return ", ".join(f"{name} {label_of(part)}" for name, part in value.items())
     if isinstance(value, tuple | list):
         return ", ".join(map(label_of, value))
     return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)[:60]
 
 
-def _word(trial: Trial) -> str:
+def _verdict_word(trial: Trial) -> str:
     return "HOLDS" if trial.holds else "FAILS"

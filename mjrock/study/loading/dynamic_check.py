@@ -119,15 +119,15 @@ class DynamicCheck:
 
     def lacking_in(self, language: str) -> tuple[str, ...]:
         """What the code demands of dynamic runs and these lack, in a language of the code."""
-        count, one_way, least = self.records, self.in_one_polarity, self.rule.records
+        count, one_way, needed = self.records, self.in_one_polarity, self.rule.records
         applies = {
-            "records": (count < least, count),
+            "records": (count < needed, count),
             "polarity": (one_way > 0, one_way),
             "natural": (self.natural is False, count),
             "origin": (self.natural is None, count),
         }
         lacks = {key: number for key, (holds, number) in applies.items() if holds}
-        texts = (self.code.text(f"lacks_{key}", language, count=n, least=least) for key, n in lacks.items())
+        texts = (self.code.text(f"lacks_{key}", language, count=n, least=needed) for key, n in lacks.items())
         return tuple(filter(None, texts))
 
     @property
@@ -179,12 +179,12 @@ class DynamicCheck:
             spread = f"{middle:.3f} in the median, {low:.3f} to {high:.3f} in nine of ten"
             lines.append(f"restitution |e| of {len(self.restitution)} impacts: {spread}")
         lines += [f"judged: {self.judged}"] if self.judged else []
-        lines += [f"lacking: {what}" for what in self.lacking]
+        lines += [f"lacking: {lack}" for lack in self.lacking]
         before = () if kinematic is None else kinematic.verdicts
         return "\n".join([*lines, verdicts_of((*before, *self.verdicts))])
 
     def _repr_html_(self) -> str:
-        runs = [(one.name, f"{one.d:.4f}", share_text(one.d / self.d_0)) for one in self.runs]
+        runs = [(run.name, f"{run.d:.4f}", share_text(run.d / self.d_0)) for run in self.runs]
         head = ("run", "displacement [m]", "of d_0")
         return html_of(repr(self).strip("<>"), verdict_rows(self.verdicts), [head, *runs])
 
@@ -250,28 +250,31 @@ def dynamic_check(
     require_one_of("limit_state", limit_state, code.states)
     require_kind("natural", natural, bool, type(None))
     require_kind("curve", curve, LimitCurve, Push, type(None))
-    if not is_iterable(runs) or not (given := cast("list[Response | Analysis]", listed("runs", runs))):
+    if not is_iterable(runs) or not (items := cast("list[Response | Analysis]", listed("runs", runs))):
         raise TypeError(f"runs = {shown(runs)} is not a sequence of responses or tasks of a campaign")
-    cases = _cases_of(given, curve)
+    cases = _cases_of(items, curve)
     motions = [case.motion for case in cases if case.motion is not None]
-    responses = [run for run in given if isinstance(run, Response)]
+    responses = [run for run in items if isinstance(run, Response)]
     if responses and store is not None:
         raise ValueError("store is for the tasks of a campaign, and runs are responses; leave it out")
     if curve is None:
         case = cast(Case, cases[0])
-        d_0, maxima = d_0_of(case), [displaced(case.wall, one * case.wall.alpha) for one in _peaks(given, store)]
+        d_0, maxima = (
+            d_0_of(case),
+            [displaced(case.wall, peak * case.wall.alpha) for peak in _peaks(items, store)],
+        )
     else:
         centroid = MovingCentroid.from_curve(curve)
-        d_0, maxima = centroid.d_0, [centroid.largest(one) for one in _masonry_runs(given, store, histories)]
+        d_0, maxima = centroid.d_0, [centroid.largest(run) for run in _masonry_runs(items, store, histories)]
         centroid.warn_of_weaker_direction()
-    found = tuple(
+    run_maxima = tuple(
         RunMaximum(motion.name, *signal, run.solver, d)
-        for motion, signal, run, d in zip(motions, signals_of(cases), given, maxima, strict=True)
+        for motion, signal, run, d in zip(motions, signals_of(cases), items, maxima, strict=True)
     )
     impacts = (impact.restitution for run in responses if curve is None for impact in run.impacts)
     known = tuple(e for e in impacts if not math.isnan(e))
     moved = {} if curve is None else {"moving": centroid.blocks, "way": tuple(centroid.direction.tolist())}
-    check = DynamicCheck(limit_state, d_0, found, known, natural, code, cases[0], **moved)
+    check = DynamicCheck(limit_state, d_0, run_maxima, known, natural, code, cases[0], **moved)
     if check.lacking:
         warn_of(f"{rule.clause or code.name} requires more: {'; '.join(check.lacking)}", Implausible)
     return check
@@ -312,13 +315,13 @@ class MovingCentroid(NamedTuple):
     def from_curve(cls, curve: LimitCurve | Push) -> MovingCentroid:
         """The blocks that move in a limit curve, or all free ones in a push."""
         if isinstance(curve, LimitCurve):
-            found = PartCurve.from_curve("curve", curve)
-            if not found.is_whole:
+            moving = PartCurve.from_curve("curve", curve)
+            if not moving.is_whole:
                 raise ValueError(
                     f"curve = {curve!r} ends where something is borne; give it up to where nothing is, or take the "
                     "push of masonry that slides"
                 )
-            return cls(found.masonry, found.part.names, found.part.direction, float(found.displacement[-1]))
+            return cls(moving.masonry, moving.part.names, moving.part.direction, float(moving.displacement[-1]))
         masonry = cast(MasonryCase, curve.answer.case).masonry
         return cls(masonry, tuple(masonry.names[i] for i in masonry.free), curve.way, curve.d_0)
 
@@ -400,14 +403,14 @@ def _masonry_runs(
         return [MasonryRun(cast(MasonryCase, run.case), run.pose, bool(run.fallen)) for run in runs]  # type: ignore[union-attr]
     if histories is None:
         raise ValueError("runs are tasks of a campaign of masonry; give its file as store and its folder as histories")
-    found = []
+    masonry_runs = []
     for task, row in zip(runs, _rows(cast("list[Analysis]", runs), store), strict=True):
         file = Path(histories) / f"{row['key']}.npz"
         if not file.exists():
             raise ValueError(f"{task!r} has no history in {histories}; run it with that folder as histories")
         with np.load(file) as arrays:
-            found.append(MasonryRun(cast(MasonryCase, task.case), arrays["pose"], bool(row["fallen"])))
-    return found
+            masonry_runs.append(MasonryRun(cast(MasonryCase, task.case), arrays["pose"], bool(row["fallen"])))
+    return masonry_runs
 
 
 def _rows(tasks: Sequence[Analysis], store: str | Path | None) -> list[Row]:
@@ -416,19 +419,19 @@ def _rows(tasks: Sequence[Analysis], store: str | Path | None) -> list[Row]:
         raise ValueError("runs are tasks of a campaign; give its file as store")
     from ..campaign.campaign import results
 
-    done = [row for row in results(tasks, store) if row is not None and row["status"] == "done"]
-    if len(done) < len(tasks):
+    rows = [row for row in results(tasks, store) if row is not None and row["status"] == "done"]
+    if len(rows) < len(tasks):
         raise ValueError(
-            f"{len(tasks) - len(done)} of {len(tasks)} tasks have no row that is done in {store}; run them"
+            f"{len(tasks) - len(rows)} of {len(tasks)} tasks have no row that is done in {store}; run them"
         )
-    return done
+    return rows
 
 
-def _of_one_record(one: AnyCase, other: AnyCase) -> bool:
+def _share_record(one: AnyCase, other: AnyCase) -> bool:
     """Whether two cases have one record, in either polarity of each horizontal component."""
     return one.vertical == other.vertical and all(
-        now == then or (then is not None and now in then.polarities)
-        for now, then in ((other.motion, one.motion), (other.transverse, one.transverse))
+        motion == first_motion or (first_motion is not None and motion in first_motion.polarities)
+        for motion, first_motion in ((other.motion, one.motion), (other.transverse, one.transverse))
     )
 
 
@@ -437,7 +440,7 @@ def signals_of(cases: Sequence[AnyCase]) -> list[tuple[int, bool]]:
     firsts: list[AnyCase] = []
     signals = []
     for case in cases:
-        number = next((i for i, first in enumerate(firsts) if _of_one_record(first, case)), len(firsts))
+        number = next((i for i, first in enumerate(firsts) if _share_record(first, case)), len(firsts))
         if number == len(firsts):
             firsts.append(case)
         signals.append((number, case.motion != firsts[number].motion))

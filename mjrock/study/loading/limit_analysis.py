@@ -160,7 +160,7 @@ def collapse_multiplier(
     dilates = require_flag("associated", associated)
     if not dilates:
         masonry.require_dry("collapse_multiplier without dilatancy")
-    constant_effects, growing = _required(masonry, effects), _growing(masonry, loads)
+    constant_effects, growing = _required_effects(masonry, effects), _required_loads(masonry, loads)
     laws = [link.law for link in link_effects(constant_effects).values()]
     if pose is not None:
         masonry.require_dry("collapse_multiplier in a pose")
@@ -192,7 +192,7 @@ def collapse_multiplier(
             "together; the multiplier is that of blocks that are wedged",
             Implausible,
         )
-    if not dilates and (twisting := _twisting(collapse, loads_at_limit, ties)):
+    if not dilates and (twisting := _twisting_joints(collapse, loads_at_limit, ties)):
         warn_of(
             f"multiplier = {abs(collapse.multiplier):.1g}: {named(twisting)} turn about their normals without "
             "friction, since rigid faces let normal forces gather in a point; give points = 2, or associated=True for "
@@ -272,17 +272,17 @@ def _overturning(case: Case, forces: Sequence[WallForce]) -> OverturningMode | N
 def _warn_of_other_direction(case: Case, forces: Sequence[WallForce], factor: float) -> None:
     """Warn where horizontal forces overturn a wall that is free both ways at a lower factor when they push the other
     way."""
-    other = _overturning(case, [force._replace(outwards=-force.outwards) for force in forces])
-    if other is not None and other.factor < (1 - WEAKER) * factor:
+    opposite = _overturning(case, [force._replace(outwards=-force.outwards) for force in forces])
+    if opposite is not None and opposite.factor < (1 - WEAKER) * factor:
         warn_of(
             f"the wall has side_stop=False, and {factor:.4g} times the forces that grow overturn it; where they push "
-            f"the other way {other.factor:.4g} times do: check that way too, with direction and forces of the other "
+            f"the other way {opposite.factor:.4g} times do: check that way too, with direction and forces of the other "
             "sign",
             Implausible,
         )
 
 
-def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Effect, ...]:
+def _required_effects(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Effect, ...]:
     """Effects as a case of the masonry takes them. An error names one whose force the motion alone decides."""
     constant_effects = MasonryCase(masonry, 1.0, effects=effects, settled=False).effects  # type: ignore[arg-type]
     for i, effect in enumerate(constant_effects):
@@ -302,7 +302,7 @@ def _required(masonry: Masonry, effects: Sequence[Effect] | Effect) -> tuple[Eff
     return constant_effects
 
 
-def _twisting(collapse: Collapse, loads: LimitLoads, ties: Pulls) -> tuple[str, ...]:
+def _twisting_joints(collapse: Collapse, loads: LimitLoads, ties: Pulls) -> tuple[str, ...]:
     """Names of joints whose twist alone makes the multiplier zero: they press, and turn about their normals.
 
     With associated friction, where corners of the faces press, something is borne then.
@@ -319,7 +319,7 @@ def _twisting(collapse: Collapse, loads: LimitLoads, ties: Pulls) -> tuple[str, 
     return tuple(joint.name for joint, twisted in zip(masonry.joints, twists, strict=True) if twisted)
 
 
-def _growing(masonry: Masonry, loads: object) -> Mapping[str, tuple[float, ...]] | tuple[Effect, ...]:
+def _required_loads(masonry: Masonry, loads: object) -> Mapping[str, tuple[float, ...]] | tuple[Effect, ...]:
     """Loads that grow, checked: effects with the numbers of their blocks, or forces by the name of a free block."""
     if loads is None:
         return ()
@@ -396,10 +396,10 @@ class LimitCurve:
     effects: tuple[Effect, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
-        of = "times the forces that grow" if self.start.loads else "of the weight"
+        unit = "times the forces that grow" if self.start.loads else "of the weight"
         return (
             f"<LimitCurve: {len(self.multiplier)} poses to {self.displacement[-1]:.3g} m, from "
-            f"{self.multiplier[0]:.4g} to {self.multiplier[-1]:.4g} {of}, {self.ended}>"
+            f"{self.multiplier[0]:.4g} to {self.multiplier[-1]:.4g} {unit}, {self.ended}>"
         )
 
     @property
@@ -466,15 +466,15 @@ def limit_curve(
     """
     require_kind("masonry", masonry, Masonry)
     masonry.require_dry("limit_curve")
-    constant_effects = _required(masonry, effects)
+    constant_effects = _required_effects(masonry, effects)
     push = partial(collapse_multiplier, masonry, direction, angle=angle, loads=loads, effects=constant_effects)
     start = collapse = push()
     path = Path.from_collapse(masonry, start)
     if to is None:
         step = path.expected_length(start, push) / poses
-        to, most = math.inf, STEPS_ALLOWED * poses
+        to, allowed = math.inf, STEPS_ALLOWED * poses
     else:
-        step, most = to / poses, poses
+        step, allowed = to / poses, poses
     curve = [(0.0, collapse.multiplier, path.rest)]
     while True:
         d, multiplier, pose = curve[-1]
@@ -488,7 +488,7 @@ def limit_curve(
         if path.travel(pose) - d < PROJECTION_TOLERANCE * path.size:
             ended = "locks"
             break
-        if len(curve) > most + len(path.pair):
+        if len(curve) > allowed + len(path.pair):
             ended = "lines close again and again"
             break
         try:
@@ -585,9 +585,9 @@ class Path(NamedTuple):
         closed = moved_lines(lines, moves).gap <= self.masonry.tolerance
         normal = self.rates(moves, lines.normal) @ velocity
         along = np.hypot.reduce([self.rates(moves, tangent) @ velocity for tangent in lines.tangents])
-        least = CLOSED_RATE * max(float(np.abs(normal[closed]).max(initial=0.0)), float(np.abs(velocity).max()))
-        still = closed & (np.abs(normal) <= least)
-        return ClosedLines(still, still & (along <= least), closed & (along > CLOSED_RATE * np.abs(velocity).max()))
+        threshold = CLOSED_RATE * max(float(np.abs(normal[closed]).max(initial=0.0)), float(np.abs(velocity).max()))
+        stays = closed & (np.abs(normal) <= threshold)
+        return ClosedLines(stays, stays & (along <= threshold), closed & (along > CLOSED_RATE * np.abs(velocity).max()))
 
     def sliding(self, collapse: Collapse, closed: ClosedLines) -> list[str]:
         """Names of the joints that press, rub and slide at each line that does not open, or at all that do."""
@@ -595,7 +595,7 @@ class Path(NamedTuple):
             return []
         joints, normal = range(len(self.masonry.joints)), collapse.forces.normal
         rub = (normal > UNPRESSED * normal.max()) & (self.masonry.joint_friction > 0)
-        slide, stick = (np.isin(joints, self.masonry.lines.joint[which]) for which in (closed.slides, closed.stuck))
+        slide, stick = (np.isin(joints, self.masonry.lines.joint[flags]) for flags in (closed.slides, closed.stuck))
         return [self.masonry.joints[number].name for number in np.flatnonzero(rub & slide & ~stick)]
 
     def advanced(self, pose: Array, collapse: Collapse, closed: ClosedLines, step: float) -> Array:
@@ -651,5 +651,5 @@ class Path(NamedTuple):
         if not self.masonry.in_space:
             return pose + motion
         turn = Moves.from_pose(self.masonry, pose).turn[list(self.masonry.free)]
-        own = np.concatenate([motion[:, :3], (np.swapaxes(turn, 1, 2) @ motion[:, 3:, None])[..., 0]], axis=1)
-        return moved(pose.ravel(), own.ravel(), SPACE).reshape(pose.shape)
+        block_motion = np.concatenate([motion[:, :3], (np.swapaxes(turn, 1, 2) @ motion[:, 3:, None])[..., 0]], axis=1)
+        return moved(pose.ravel(), block_motion.ravel(), SPACE).reshape(pose.shape)

@@ -79,8 +79,8 @@ class LoadCheck:
         return verdicts_of(self.verdicts)
 
     def __repr__(self) -> str:
-        (one,) = self.verdicts
-        return f"<LoadCheck {one.label}: {self.capacity:.4g} for {self.demand:.4g}{' N' * bool(self.unit)}, {one.what}>"
+        (verdict,), unit = self.verdicts, " N" * bool(self.unit)
+        return f"<LoadCheck {verdict.label}: {self.capacity:.4g} for {self.demand:.4g}{unit}, {verdict.what}>"
 
 
 def load_check(result: StaticAnswer, demand: float | None = None) -> LoadCheck:
@@ -107,7 +107,7 @@ def load_check(result: StaticAnswer, demand: float | None = None) -> LoadCheck:
         >>> mr.load_check(mr.collapse_multiplier(column), 0.15)
         <LoadCheck HOLDS: 0.2 for 0.15, limit analysis>
     """
-    if call := next((call for kind, call in ANSWERED_BY.items() if isinstance(result, kind)), None):
+    if call := next((call for result_type, call in ANSWERED_BY.items() if isinstance(result, result_type)), None):
         raise TypeError(f"result = {shown(result)} is what bears, and no answer; take mr.load_check({call}, demand)")
     require_kind("result", result, *WHAT)
     if isinstance(result, PushoverCurve):

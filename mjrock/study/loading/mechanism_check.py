@@ -203,12 +203,12 @@ class MechanismCheck:
         ratios = {name: self._nonlinear(name).ratio for name in self.states if self.is_of_start(name)}
         values += [("ground_ratio", name, ratio) for name, ratio in ratios.items()]
         prefix, steps = FREE if self._is_free else ON_FLOOR if self._is_on_floor else "", []
-        for key, of, value in values:
+        for key, owner, value in values:
             key = prefix + key if prefix + key in self.code.steps else key
             if value is not None and key in self.code.steps:
                 unit = CHECK_STEPS[key].unit
                 steps.append(
-                    Step(key, value / GRAVITY if unit == "g" else value, self.code.step(key, of).clause, unit, of)
+                    Step(key, value / GRAVITY if unit == "g" else value, self.code.step(key, owner).clause, unit, owner)
                 )
         return tuple(steps)
 
@@ -251,10 +251,11 @@ class MechanismCheck:
 
     def __repr__(self) -> str:
         ratios = ", ".join(
-            f"{one.limit_state} {ratio_text(one.ratio)} {one.label}" for one in map(self._nonlinear, self.states)
+            f"{check.limit_state} {ratio_text(check.ratio)} {check.label}"
+            for check in map(self._nonlinear, self.states)
         )
-        of = f" of {named(self.moving)}" if self.moving else ""
-        return f"<MechanismCheck{of}: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
+        moving = f" of {named(self.moving)}" if self.moving else ""
+        return f"<MechanismCheck{moving}: starts at {self.a_0 / GRAVITY:.4g} g, capacity over demand {ratios}>"
 
 
 @within_ranges

@@ -72,13 +72,13 @@ class MechanismCurve(NamedTuple):
 def curve_of(case: Checked, code: Code) -> MechanismCurve:
     """The curve of the mechanism of a case, a corner, a bending or a limit curve."""
     if isinstance(case, VerticalBending | HorizontalBending):
-        return _of_bending(case)
+        return _curve_of_bending(case)
     if isinstance(case, LimitCurve):
-        return _of_blocks(case, code)
-    return _of_wall(cast(Case, case_of(case)), code)
+        return _curve_of_blocks(case, code)
+    return _curve_of_wall(cast(Case, case_of(case)), code)
 
 
-def _of_bending(bending: VerticalBending | HorizontalBending) -> MechanismCurve:
+def _curve_of_bending(bending: VerticalBending | HorizontalBending) -> MechanismCurve:
     """A wall between floors or side walls. The curve is that of the common centroid, and d is its displacement over e*
     then, by C8.7.1.4 and C8.7.1.5."""
     curve, participation = bending.curve, bending.participation
@@ -129,7 +129,7 @@ class PartCurve(NamedTuple):
         return bool(self.multiplier[-1] == 0)
 
 
-def _of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
+def _curve_of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
     """Masonry of blocks, up to where nothing is borne, or where the mechanism cannot go on."""
     moving = PartCurve.from_curve("case", curve)
     part, d = moving.part, moving.displacement / moving.part.participation
@@ -138,8 +138,8 @@ def _of_blocks(curve: LimitCurve, code: Code) -> MechanismCurve:
         _require_some(curve, float(d[-1]), alpha_0, part.participation)
     pulled = any(link.law.holds for link in link_effects(curve.effects).values())
     yielding, breaking = (
-        {tie: float(np.interp(at, moving.along, d)) for tie, at in of.items() if at <= moving.along[-1]}
-        for of in curve.ties
+        {tie: float(np.interp(at, moving.along, d)) for tie, at in ties.items() if at <= moving.along[-1]}
+        for ties in curve.ties
     )
     last, rule = list(code.states.items())[-1]
     capacity = rule.share * float(d[-1])
@@ -175,7 +175,7 @@ def _require_some(curve: LimitCurve, d: float, alpha_0: float, participation: fl
     )
 
 
-def _of_wall(case: Case, code: Code) -> MechanismCurve:
+def _curve_of_wall(case: Case, code: Code) -> MechanismCurve:
     """A wall that overturns, with its ties. Raises a ValueError if they hold it for good."""
     require_wall("case", case, "mr.limit_curve(masonry, direction)")
     curve = pushover(case)
@@ -188,7 +188,9 @@ def _of_wall(case: Case, code: Code) -> MechanismCurve:
     moved = wall.pose(curve.rotation)[:, 0]  # of the control point, the centroid
     d = moved * second / (wall.centroid_height * first)
     without_ties = float(wall.pose(np.array([max(case.restoring.outer.alpha, 0.0)]))[0, 0] * d[-1] / moved[-1])
-    yielding, breaking = ({tie: float(np.interp(at, curve.rotation, d)) for tie, at in of.items()} for of in curve.ties)
+    yielding, breaking = (
+        {tie: float(np.interp(at, curve.rotation, d)) for tie, at in ties.items()} for ties in curve.ties
+    )
     last, rule = list(code.states.items())[-1]
     _warn_of_ties(case.springs, f"d_{last}", rule.share * float(d[-1]), without_ties, breaking)
     tied = None
@@ -248,9 +250,9 @@ def _stands_by_ties(curve: LimitCurve, masonry: Masonry, at: int) -> bool:
         return False
     others = [effect for effect in curve.effects if effect not in springs.values()]
     push = curve.start.direction
-    way = push[:2] if masonry.in_space else float(push[0])
+    direction = push[:2] if masonry.in_space else float(push[0])
     try:
-        return collapse_multiplier(masonry, way, effects=others, pose=curve.pose[at]).multiplier <= 0
+        return collapse_multiplier(masonry, direction, effects=others, pose=curve.pose[at]).multiplier <= 0
     except ValueError:
         return False
 

@@ -35,18 +35,18 @@ class MovingPart(NamedTuple):
     sway: Array
 
     @classmethod
-    def from_collapse(cls, found: Collapse, masonry: Masonry, effects: tuple[Effect, ...]) -> MovingPart:
+    def from_collapse(cls, collapse: Collapse, masonry: Masonry, effects: tuple[Effect, ...]) -> MovingPart:
         """That of the mechanism of masonry with its effects."""
-        numbers = [masonry.names.index(name) for name in found.moving]
+        numbers = [masonry.names.index(name) for name in collapse.moving]
         masses = [effect for effect in effects if effect.mass_added and effect.block in numbers]
         block = np.array(numbers + [effect.block for effect in masses])
         mass = [masonry.blocks[i].mass for i in numbers] + [effect.mass_added for effect in masses]
-        at = np.array([masonry.centroids[i] for i in numbers] + [place_in_world(masonry, one) for one in masses])
+        at = np.array([masonry.centroids[i] for i in numbers] + [place_in_world(masonry, effect) for effect in masses])
         arms = at - np.asarray(masonry.centroids)[block]
         rows = [masonry.free.index(i) for i in block]
-        sway = [wrench(arm, found.direction) @ found.motion[row] for arm, row in zip(arms, rows, strict=True)]
+        sway = [wrench(arm, collapse.direction) @ collapse.motion[row] for arm, row in zip(arms, rows, strict=True)]
         weight, speed = GRAVITY * np.array(mass), np.array(sway)
-        return cls(found.moving, weight, block, at, found.direction, speed * weight.sum() / (weight @ speed))
+        return cls(collapse.moving, weight, block, at, collapse.direction, speed * weight.sum() / (weight @ speed))
 
     @property
     def participation(self) -> float:
@@ -56,13 +56,13 @@ class MovingPart(NamedTuple):
 
     def displacement(self, masonry: Masonry, pose: Array) -> Array:
         """How far its centroid has gone along the force in poses of the free blocks [m], shape (n,)."""
-        places = np.array([Moves.from_pose(masonry, one).at(self.block, self.at) for one in pose])
+        places = np.array([Moves.from_pose(masonry, placed).at(self.block, self.at) for placed in pose])
         return np.asarray(((places - self.at) @ self.direction) @ self.weight / self.weight.sum())
 
 
-def multiplier_of(found: Collapse, masonry: Masonry, effects: tuple[Effect, ...]) -> float:
+def multiplier_of(collapse: Collapse, masonry: Masonry, effects: tuple[Effect, ...]) -> float:
     """The multiplier of a mechanism without its ties, by virtual work of what is constant and of what grows [-]."""
-    velocity, direction = found.motion.ravel(), found.direction
+    velocity, direction = collapse.motion.ravel(), collapse.direction
     constant = weight_of(masonry) + applied(masonry, effects).ravel()
     grown = pushed(masonry, direction) + inertia_of_added_masses(masonry, effects, direction)
     return float(-(constant @ velocity) / (grown.ravel() @ velocity))

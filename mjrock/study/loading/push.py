@@ -190,7 +190,7 @@ def push(
     require_within("to", float(turns[np.abs(turns).argmax()]), -LARGEST_STROKE, LARGEST_STROKE, "m")
     if turns.any():
         require_within("to", float(np.abs(turns).max()), SHORTEST_PUSH, LARGEST_STROKE, "m")
-    case = _required(masonry, effects, start)
+    case = _required_case(masonry, effects, start)
     pushed = case, start, mass_damping, local_damping
     if isinstance(driver, Actuator) and angle is None:
         return _pushed_in_pieces(
@@ -204,7 +204,7 @@ def push(
     return _pushed_in_pieces(ForceRun(*pushed, actuator, float(turns[0])), allowed, falls_to)
 
 
-def _required(masonry: Masonry, effects: Sequence[Effect] | Effect, start: object) -> MasonryCase:
+def _required_case(masonry: Masonry, effects: Sequence[Effect] | Effect, start: object) -> MasonryCase:
     """The masonry with the effects that stay, where steps take them and the start."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Implausible)
@@ -340,13 +340,13 @@ class PushRun:
                 local_damping=self.local_damping,
             )
         except RuntimeError as broken:
-            what = str(broken).partition("; take ")[0]
+            failure = str(broken).partition("; take ")[0]
             piece = f"in a piece of the push of {case.duration:.3g} s at {1e3 * self.level:.4g} mm"
             remedy = "make what drives it less stiff"
             if isinstance(broken, EnergyGainError):
                 damped = "local_damping = 0.1 or mass_damping = 5, or its joints by xi"
                 remedy = f"masonry that has given way swings; damp its motion by {damped}"
-            raise type(broken)(f"{what}, {piece}: {remedy}") from None
+            raise type(broken)(f"{failure}, {piece}: {remedy}") from None
 
     def compression_at(self, answer: Response, force: Array, advance: Array) -> Array:
         """How far the spring of the actuator is pressed at the samples [m], without the part of its dashpot."""
@@ -364,9 +364,9 @@ class PushRun:
         ledger, driving = answer.ledger, list(answer.actuators)[-1]
         assert ledger is not None
         others = sum((work for name, work in ledger.put_in.items() if name != driving), np.zeros(len(answer.t)))
-        own = ledger.dashpots[driving] + 0.5 * self.actuator.stiffness * compression**2
+        of_actuator = ledger.dashpots[driving] + 0.5 * self.actuator.stiffness * compression**2
         total = sum(ledger.taken.values(), ledger.potential + ledger.elastic)
-        total = total - others - own - self._mass_damping_work(answer)
+        total = total - others - of_actuator - self._mass_damping_work(answer)
         return np.asarray(self.energy + total - total[0])
 
     def _mass_damping_work(self, answer: Response) -> Array:
@@ -382,8 +382,8 @@ class PushRun:
 
     def inertia_share(self, piece: Piece) -> float:
         """Root mean square of the inertia in a piece, over the largest force so far [-]."""
-        most = max(self.largest_force, float(np.abs(piece.force).max()))
-        return float(np.sqrt(np.mean(piece.inertia**2))) / most
+        largest = max(self.largest_force, float(np.abs(piece.force).max()))
+        return float(np.sqrt(np.mean(piece.inertia**2))) / largest
 
     def next_duration(self, duration: float, share: float, allowed: float) -> float:
         """Time of the next piece [s], from that of the last and its inertia, over the largest force, and what is

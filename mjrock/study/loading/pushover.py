@@ -71,7 +71,7 @@ def tilted(scene: Scene, rotations: Array) -> HeldPoses:
             moved = np.array([start - 0.5 * (before + lever) * step, pose[1], theta])
             carried = _carried(scene, potential, moved)
             if carried is None:
-                return _tilted(scene, base, rows[:n])
+                return _held_poses(scene, base, rows[:n])
             pose, springs = carried
             lever = _lever(scene, int(base[-1]), pose)
         total = potential.load(pose) + springs
@@ -80,10 +80,10 @@ def tilted(scene: Scene, rotations: Array) -> HeldPoses:
             stretch(ties, i, frames_of(pose), pose)
         # with F the friction and H the force at the centroid: total_x + F + H = 0 and total_theta + F lever = 0
         rows[n] = *pose, total[2] / lever - total[0], -lever
-    return _tilted(scene, base, rows)
+    return _held_poses(scene, base, rows)
 
 
-def _tilted(scene: Scene, base: Integers, rows: Array) -> HeldPoses:
+def _held_poses(scene: Scene, base: Integers, rows: Array) -> HeldPoses:
     lifted: Flags = np.any(gaps(scene.places, rows[:, :3])[:, base] >= 0, axis=1)
     return HeldPoses(rows[:, :3], rows[:, 3], rows[:, 4], lifted)
 
@@ -206,8 +206,8 @@ def pushover(
         start = float(multiplier[0])
     else:
         scene, uplift = wall_scene(case, contacts), Uplift.from_case(case, contacts).rotation
-        rest = float(scene.at_rest[0, 2])
-        path = np.unique(np.concatenate([_path(case, rest, uplift, points), requested]))
+        rest_rotation = float(scene.at_rest[0, 2])
+        path = np.unique(np.concatenate([_path(case, rest_rotation, uplift, points), requested]))
         held = tilted(scene, path)
         if requested.size and len(held.pose) < len(path) and requested[-1] > path[len(held.pose) - 1]:
             raise ValueError(
@@ -237,14 +237,14 @@ def _rigid(case: Case, phi: Array) -> tuple[Array, Array]:
     return moment / (wall.weight * (wall.centroid_height * np.cos(phi) + wall.lever * np.sin(phi))), moment
 
 
-def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
+def _path(case: Case, rest_rotation: float, uplift: float, points: int) -> Array:
     """Rotations from rest to beyond overturning [rad], denser about the uplift and where a tie changes."""
     fine = np.linspace(0.0, ON_ITS_FACE, 20_001)
     limit = min(CURVE_MARGIN * falls_to_zero(fine, _rigid(case, fine)[0], math.inf), ON_ITS_FACE)
-    parts = [np.linspace(rest, limit, points if not uplift else points // 2)]
+    parts = [np.linspace(rest_rotation, limit, points if not uplift else points // 2)]
     if uplift:
         near = min(max(uplift, 1e-9), limit)
-        parts += [np.linspace(rest, near, points // 8), np.geomspace(near, limit, points // 2)]
+        parts += [np.linspace(rest_rotation, near, points // 8), np.geomspace(near, limit, points // 2)]
         # the uplift itself is known to second order in the rotation
         parts += [near * np.array([1 - 1e-3, 1 - 1e-4, 1 + 1e-6, 1 + 1e-4, 1 + 1e-3])]
     for pull in case.resisting:
@@ -254,7 +254,7 @@ def _path(case: Case, rest: float, uplift: float, points: int) -> Array:
             if beyond.size:
                 parts.append(fine[max(beyond[0] - 1, 0) : beyond[0] + 1])
     path = np.concatenate(parts)
-    return path[(path >= rest) & (path <= limit)]
+    return path[(path >= rest_rotation) & (path <= limit)]
 
 
 def falls_to_zero(at: Array, borne: Array, never: float = math.nan) -> float:

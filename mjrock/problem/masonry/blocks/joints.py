@@ -161,8 +161,8 @@ def each_with_each(first: Integers, number: Integers, pairs: Integers) -> tuple[
     counts = number[pairs]
     sizes = counts.prod(axis=1)
     pair = np.repeat(np.arange(len(pairs)), sizes)
-    one, other = np.divmod(np.arange(len(pair)) - np.repeat(np.cumsum(sizes) - sizes, sizes), counts[pair, 1])
-    return pair, first[pairs[pair, 0]] + one, first[pairs[pair, 1]] + other
+    of_first, of_second = np.divmod(np.arange(len(pair)) - np.repeat(np.cumsum(sizes) - sizes, sizes), counts[pair, 1])
+    return pair, first[pairs[pair, 0]] + of_first, first[pairs[pair, 1]] + of_second
 
 
 class Edges(NamedTuple):
@@ -249,13 +249,13 @@ def joints_in_plane(
     )
     joints: list[Joint] = []
     overlaps: list[tuple[float, int, int]] = []
-    for some in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)):
-        pair, one, other = each_with_each(first, number, some)
-        both = np.column_stack([one, other])
-        depth = np.minimum(of_parts.sunk(both), of_parts.sunk(both[:, ::-1]))
+    for batch in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)):
+        pair, part, other_part = each_with_each(first, number, batch)
+        part_pairs = np.column_stack([part, other_part])
+        depth = np.minimum(of_parts.sunk(part_pairs), of_parts.sunk(part_pairs[:, ::-1]))
         deep = depth > tolerance
-        overlaps += [(how, i, j) for how, (i, j) in zip(depth[deep].tolist(), some[pair[deep]].tolist(), strict=True)]
-        joints += _joints(blocks, edges, meetings(edges, some, tolerance, gap), names, corner_within(tolerance, gap))
+        overlaps += [(how, i, j) for how, (i, j) in zip(depth[deep].tolist(), batch[pair[deep]].tolist(), strict=True)]
+        joints += _joints(blocks, edges, meetings(edges, batch, tolerance, gap), names, corner_within(tolerance, gap))
     require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
 
@@ -270,8 +270,8 @@ def unlike_named(joints: Sequence[AnyJoint]) -> tuple[AnyJoint, ...]:
     count, named = Counter[str](), []
     for joint in joints:
         count[joint.name] += 1
-        again = count[joint.name]
-        named.append(joint if again == 1 else replace(joint, name=f"{joint.name} ({again})"))
+        repeats = count[joint.name]
+        named.append(joint if repeats == 1 else replace(joint, name=f"{joint.name} ({repeats})"))
     return tuple(named)
 
 
@@ -295,8 +295,8 @@ def meetings(edges: Edges, pairs: Integers, tolerance: float, gap: float) -> Mee
     stops = np.where((last < long)[:, None], c, b) + (np.where(last < long, -0.5, 0.5) * gaps[:, 1])[:, None] * n
     # whichever of the two is above, it leaves the other after the same travel back and forth along the joint
     travel = np.column_stack([long - first, last])
-    own = np.column_stack([edge, other])[lie] - edges.first[pairs[pair[lie]]]
-    return Meetings(pairs[pair[lie]], own, np.stack([starts, stops], axis=1)[lie], n[lie], travel[lie])
+    edge_pairs = np.column_stack([edge, other])[lie] - edges.first[pairs[pair[lie]]]
+    return Meetings(pairs[pair[lie]], edge_pairs, np.stack([starts, stops], axis=1)[lie], n[lie], travel[lie])
 
 
 def _joints(
@@ -306,7 +306,7 @@ def _joints(
     n, fixed = met.normal, np.array([block.fixed for block in blocks])
     upwards = np.where(np.abs(n[:, 1]) > LEVEL, n[:, 1], n[:, 0]) > 0  # across a vertical joint, the right is above
     turned = np.where(upwards, fixed[met.pair[:, 1]], ~fixed[met.pair[:, 0]])
-    pairs, sides = (np.where(turned[:, None], both[:, ::-1], both) for both in (met.pair, met.edge))  # below, above
+    pairs, sides = (np.where(turned[:, None], two[:, ::-1], two) for two in (met.pair, met.edge))  # below, above
     along = met.ends[:, 1] - met.ends[:, 0]
     back = np.where(turned, -1.0, 1.0) * _cross(along, n) < 0
     ends = np.where(back[:, None, None], met.ends[:, ::-1], met.ends)
@@ -361,7 +361,7 @@ def require_apart(overlaps: Sequence[tuple[float, int, int]], names: Sequence[st
     if not overlaps:
         return
     deepest, i, j = max(overlaps, key=lambda overlap: overlap[0])
-    pairs = len({(one, other) for _, one, other in overlaps})
+    pairs = len({(block, other_block) for _, block, other_block in overlaps})
     most = f", the most of {pairs} pairs of blocks" if pairs > 1 else ""
     raise OverlapError(
         f"blocks {names[i]} and {names[j]} overlap by {deepest:.3g} m{most}; the valid range is up to the tolerance, "

@@ -139,14 +139,14 @@ class Faces(NamedTuple):
     def from_sides(cls, corners: Sequence[Array], sides: Sequence[Sequence[Side]]) -> Faces:
         """Those of bodies with these corners and sides."""
         every = list(chain.from_iterable(sides))
-        numbers = [np.array([len(each) for each in some]) for some in (sides, corners)]
+        numbers = [np.array([len(things) for things in lists]) for lists in (sides, corners)]
         normals, outlines = np.array([side.normal for side in every]), [side.corners for side in every]
-        count, first = np.array([len(ring) for ring in outlines]), [np.cumsum(each) - each for each in numbers]
+        count, first = np.array([len(ring) for ring in outlines]), [np.cumsum(things) - things for things in numbers]
         begin, places = np.cumsum(count) - count, np.concatenate(outlines)
         along = (places * np.repeat(normals, count, axis=0)).sum(axis=1)
         offsets = np.add.reduceat(along, begin) / count
-        own = np.concatenate(first), np.concatenate(numbers)
-        return cls(np.concatenate(corners), normals, *own, places, begin, count, offsets)
+        numbering = np.concatenate(first), np.concatenate(numbers)
+        return cls(np.concatenate(corners), normals, *numbering, places, begin, count, offsets)
 
     def sunk(self, pairs: Integers) -> Array:
         """How deep the second body of each pair reaches behind a face of the first [m], the least over its faces."""
@@ -247,21 +247,21 @@ def joints_in_space(
     overlaps: list[tuple[float, int, int]] = []
     known: dict[tuple[bytes, bytes], Array] = {}
     pairs = neighbours(blocks, gap) if pairs is None else pairs
-    for some in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)) if len(pairs) else ():
-        pair, one, other = each_with_each(first, number, some)
-        both = np.column_stack([one, other])
-        depth = np.minimum(parts.sunk(both), parts.sunk(both[:, ::-1]))
+    for batch in np.split(pairs, range(TOGETHER, len(pairs), TOGETHER)) if len(pairs) else ():
+        pair, part, other_part = each_with_each(first, number, batch)
+        part_pairs = np.column_stack([part, other_part])
+        depth = np.minimum(parts.sunk(part_pairs), parts.sunk(part_pairs[:, ::-1]))
         for i in np.flatnonzero(depth > tolerance).tolist():
-            depth[i] = min(depth[i], _depth_along_edge_axes(solids[one[i]], solids[other[i]]))
+            depth[i] = min(depth[i], _depth_along_edge_axes(solids[part[i]], solids[other_part[i]]))
         deepest = np.maximum.reduceat(depth, np.flatnonzero(np.diff(pair, prepend=-1)))
-        deep, near = deepest > tolerance, some[deepest >= -gap]
-        overlaps += [(how, i, j) for how, (i, j) in zip(deepest[deep].tolist(), some[deep].tolist(), strict=True)]
+        deep, near = deepest > tolerance, batch[deepest >= -gap]
+        overlaps += [(how, i, j) for how, (i, j) in zip(deepest[deep].tolist(), batch[deep].tolist(), strict=True)]
         pair, face, opposite = faces.facing(near, tolerance, gap)
-        own = np.column_stack([face, opposite]) - faces.first[near[pair]]
-        rows = zip(near[pair].tolist(), own.tolist(), face.tolist(), opposite.tolist(), strict=True)
+        side_pairs = np.column_stack([face, opposite]) - faces.first[near[pair]]
+        rows = zip(near[pair].tolist(), side_pairs.tolist(), face.tolist(), opposite.tolist(), strict=True)
         for (i, j), (side, facing), k, m in rows:
             face_pair = FacePair(blocks=(i, j), sides=(side, facing), faces=(sides[k], sides[m]), axes=axes[k])
-            joints += _between(blocks, face_pair, names, (tolerance, gap), known)
+            joints += _joints_between(blocks, face_pair, names, (tolerance, gap), known)
     require_apart(overlaps, names, tolerance)
     return unlike_named(joints)
 
@@ -271,12 +271,12 @@ def _depth_along_edge_axes(block: Convex, neighbour: Convex) -> float:
     axes = edge_separating_axes(block, neighbour)
     if not len(axes):
         return np.inf
-    own, other = block.corners @ axes.T, neighbour.corners @ axes.T
-    ahead, behind = own.max(axis=0) - other.min(axis=0), other.max(axis=0) - own.min(axis=0)
+    along, along_neighbour = block.corners @ axes.T, neighbour.corners @ axes.T
+    ahead, behind = along.max(axis=0) - along_neighbour.min(axis=0), along_neighbour.max(axis=0) - along.min(axis=0)
     return float(np.minimum(ahead, behind).min())
 
 
-def _between(
+def _joints_between(
     blocks: Sequence[Shape],
     face_pair: FacePair,
     names: Sequence[str],
@@ -287,9 +287,9 @@ def _between(
 
     The outlines of joints are `known` of faces of the same shape that lie alike over each other.
     """
-    (face, other), (tolerance, gap), axes, sides = face_pair.faces, within, face_pair.axes, face_pair.sides
+    (face, opposite), (tolerance, gap), axes, sides = face_pair.faces, within, face_pair.axes, face_pair.sides
     normal, origin = face.normal, face.corners[0]
-    flat, window = (face.corners - origin) @ axes.T, (other.corners - origin) @ axes.T
+    flat, window = (face.corners - origin) @ axes.T, (opposite.corners - origin) @ axes.T
     shape = flat.tobytes(), window.tobytes()
     if shape not in known:
         outline = convex.cleaned(convex.clipped(flat, window[::-1]), tolerance)
@@ -299,8 +299,8 @@ def _between(
     if not len(outline):
         return
     places = origin + outline @ axes
-    offset = float((other.corners @ other.normal).mean())
-    gaps = (offset - places @ other.normal) / float(normal @ other.normal)
+    offset = float((opposite.corners @ opposite.normal).mean())
+    gaps = (offset - places @ opposite.normal) / float(normal @ opposite.normal)
     if gaps.max() > gap or gaps.min() < -tolerance:
         return
     places = places + 0.5 * gaps[:, None] * normal  # counterclockwise about the normal out of the first block

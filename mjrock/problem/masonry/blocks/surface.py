@@ -48,9 +48,11 @@ def surface_in_plane(parts: Sequence[Polygon], joined: Sequence[Joint], close: f
     pieces, inside = list[Side](), []
     for i, part in enumerate(parts):
         uncovered = [uncovered_ends(side, covered[i][j], SHORTEST_JOINT * close) for j, side in enumerate(part.sides)]
-        inside.append(np.array([not len(some) for some in uncovered]))
+        inside.append(np.array([not len(ends_left) for ends_left in uncovered]))
         pieces += [
-            Side(ends, side.normal, (i,)) for side, some in zip(part.sides, uncovered, strict=True) for ends in some
+            Side(ends, side.normal, (i,))
+            for side, ends_left in zip(part.sides, uncovered, strict=True)
+            for ends in ends_left
         ]
     lengths = [part.length for part in parts]
     loops = [_straightened(loop, lengths, close) for loop in _loops(pieces)]
@@ -74,7 +76,7 @@ def surface_in_space(parts: Sequence[Polyhedron], joined: Sequence[SpaceJoint], 
     for k, part in enumerate(parts):
         areas = np.array([_area_in_space(side) for side in part.sides])
         inside.append(covered[k] > (1 - LEFT_OF_SIDE) * areas)
-        sides += [side._replace(parts=(k,)) for side, gone in zip(part.sides, inside[k], strict=True) if not gone]
+        sides += [side._replace(parts=(k,)) for side, hidden in zip(part.sides, inside[k], strict=True) if not hidden]
     merged = _merged(sides, close)
     corners = np.unique(np.concatenate([side.corners for side in merged]), axis=0)
     return Surface(tuple(merged), corners, tuple(inside))
@@ -114,7 +116,7 @@ def _straightened(loop: Sequence[Side], lengths: Sequence[float], close: float) 
     """The pieces of a loop, those that lie on one line and are of parts of one length as one."""
 
     def goes_on(side: Side, piece: Side) -> bool:
-        return _goes_on(side, piece, close) and lengths[side.parts[0]] == lengths[piece.parts[0]]
+        return _continues(side, piece, close) and lengths[side.parts[0]] == lengths[piece.parts[0]]
 
     if len(loop) > 1 and goes_on(loop[-1], loop[0]):
         turns = [i for i in range(len(loop)) if not goes_on(loop[i - 1], loop[i])]
@@ -132,7 +134,7 @@ def _straightened(loop: Sequence[Side], lengths: Sequence[float], close: float) 
     return sides
 
 
-def _goes_on(side: Side, piece: Side, close: float) -> bool:
+def _continues(side: Side, piece: Side, close: float) -> bool:
     """Whether a piece goes on along the line of the side before it."""
     off = (piece.corners - side.corners[0]) @ side.normal
     return bool(side.normal @ piece.normal > 0.5 and np.abs(off).max() <= close)
@@ -152,14 +154,14 @@ def _merged(sides: list[Side], close: float) -> list[Side]:
     while True:
         normals = np.array([side.normal for side in sides])
         for i, j in np.argwhere(np.triu(normals @ normals.T > PARALLEL_NORMALS - 1e-12, 1)).tolist():
-            if (both := _both(sides[i], sides[j], close)) is not None:
-                sides = [both, *(side for k, side in enumerate(sides) if k not in (i, j))]
+            if (union := _united(sides[i], sides[j], close)) is not None:
+                sides = [union, *(side for k, side in enumerate(sides) if k not in (i, j))]
                 break
         else:
             return sides
 
 
-def _both(side: Side, other: Side, close: float) -> Side | None:
+def _united(side: Side, other: Side, close: float) -> Side | None:
     """Two sides as one, if they lie in one plane and make a convex one."""
     origin = side.corners[0]
     if side.normal @ other.normal < PARALLEL_NORMALS or np.abs((other.corners - origin) @ side.normal).max() > close:

@@ -129,7 +129,7 @@ def stack(blocks: Sequence[Block], ground: bool = True, side_stop: bool | SideSt
                 "a Polygon with its corners cut off"
             )
         fixed = i == 0 and not ground
-        polygons.append(_standing(block, (0.0, z), fixed, f"block_{i}"))
+        polygons.append(_standing_block(block, (0.0, z), fixed, f"block_{i}"))
         if not math.isclose(polygons[-1].mass, block.mass, rel_tol=1e-9):
             raise ValueError(
                 f"blocks[{i}] has openings, a gable or masses, and a block of a stack has one length: cut it at sills "
@@ -144,7 +144,7 @@ def stack(blocks: Sequence[Block], ground: bool = True, side_stop: bool | SideSt
     return polygons if side is None else [*polygons, side]
 
 
-def _standing(
+def _standing_block(
     block: Block, at: tuple[float, float], fixed: bool, name: str, between: tuple[float, float] = (0.0, math.inf)
 ) -> FlatBlock:
     """A block, or its part between two heights, the middle of whose base is at x and z [m]: a polygon, or one for each
@@ -185,7 +185,7 @@ def side_of(blocks: Sequence[FlatBlock], side_stop: bool | SideStop) -> FlatBloc
     length = max(block.length for block in blocks)
     parts = [
         Polygon([(back, low), (x, low), (x_high, high), (back, high)], 2000.0, length)
-        for (x, x_high), (low, high) in _behind([piece for block in standing for piece in _inner_faces(block)], top)
+        for (x, x_high), (low, high) in _stop_ends([piece for block in standing for piece in _inner_faces(block)], top)
     ]
     return Compound(parts, True, "side") if parts[1:] else replace(parts[0], fixed=True, name="side")
 
@@ -200,7 +200,7 @@ def _inner_faces(block: FlatBlock) -> list[InnerFace]:
     return sorted(pieces, key=lambda piece: piece.z)
 
 
-def _behind(pieces: Sequence[InnerFace], top: float) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+def _stop_ends(pieces: Sequence[InnerFace], top: float) -> list[tuple[tuple[float, float], tuple[float, float]]]:
     """x and z of both ends of each piece of a side stop up to a height [m], see `stack`."""
     inmost, faces = math.inf, list[InnerFace]()
     for piece in reversed(pieces):
@@ -472,8 +472,8 @@ def between_floors(
 
     return [
         part("base", (-2 * thickness, 3 * thickness), (-thickness, 0.0)),
-        _standing(wall, (wall.b, 0.0), False, "lower", (0.0, middle)),
-        _standing(wall, (wall.b, 0.0), False, "upper", (middle, height)),
+        _standing_block(wall, (wall.b, 0.0), False, "lower", (0.0, middle)),
+        _standing_block(wall, (wall.b, 0.0), False, "upper", (middle, height)),
         part("floor", (left, right), (height, height + deep), bending.floor_density),
         part("inner_guide", (left - thickness, left), (low, top)),
         part("outer_guide", (right, right + thickness), (low, top)),

@@ -58,7 +58,7 @@ def ground_below(low: ArrayLike, high: ArrayLike) -> Polyhedron:
     """Fixed ground under what stands on it between two corners x, y, z [m]."""
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     wide = (high - low)[:2]
-    beyond, depths = np.array([extent_of_ground(each, high[2] - low[2]) for each in wide]).T
+    beyond, depths = np.array([extent_of_ground(extent, high[2] - low[2]) for extent in wide]).T
     deep = float(depths.max())
     middle = 0.5 * (low + high)[:2]
     return Polyhedron.box((*(wide + 2 * beyond), deep), (*middle, low[2] - 0.5 * deep), fixed=True, name="ground")
@@ -296,8 +296,8 @@ def facade(
         low, high = (x[0], face[0], face[2]), (x[1], face[1], face[3])
         corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
         names[name] += 1
-        again = "" if names[name] == 1 else chr(ord("a") + names[name] - 1)
-        blocks.append(Polyhedron(corners, density, name=name + again))
+        suffix = "" if names[name] == 1 else chr(ord("a") + names[name] - 1)
+        blocks.append(Polyhedron(corners, density, name=name + suffix))
 
     for course in range(walls.courses + walls.gable):
         z = course * walls.high, (course + 1) * walls.high
@@ -356,32 +356,34 @@ def _require_inside(i: int, occupied: Rectangle, walls: Walls) -> None:
 def _pieces(walls: Walls, course: int, holes: Sequence[Rectangle]) -> list[Rectangle]:
     """Units of a course of the facade, cut where openings and lintels are."""
     (first, last), low, high = walls.span(course), course * walls.high, (course + 1) * walls.high
-    near, least = COINCIDING * walls.unit, SMALLEST_PIECE * (1 - COINCIDING)
+    near, smallest = COINCIDING * walls.unit, SMALLEST_PIECE * (1 - COINCIDING)
     cutting = [hole for hole in holes if hole[2] < high - near and hole[3] > low + near]
     edges = [edge for hole in cutting for edge in hole[:2] if first + near < edge < last - near]
     cuts = sorted({first, *edges, last})
     cuts = [cut for i, cut in enumerate(cuts) if i == 0 or cut > cuts[i - 1] + near]
-    whole: list[Rectangle] = []
+    uncut: list[Rectangle] = []
     for left, right in pairwise(cuts):
         middle, start = 0.5 * (left + right), low
         above = sorted((hole[2:] for hole in cutting if hole[0] < middle < hole[1]), key=lambda z: z[0])
         for sill, head in [*above, (high, high)]:
             if sill > start + near:
-                grown = [k for k, part in enumerate(whole) if part[1:] == (left, start, sill)]
-                part = (whole.pop(grown[0])[0] if grown else left, right, start, sill)
-                whole.append(part)
+                grown = [k for k, part in enumerate(uncut) if part[1:] == (left, start, sill)]
+                part = (uncut.pop(grown[0])[0] if grown else left, right, start, sill)
+                uncut.append(part)
             start = max(start, head)
     pieces = []
-    for left, right, start, end in whole:
-        if right - left < least * walls.unit or end - start < least * walls.high:
+    for left, right, start, end in uncut:
+        if right - left < smallest * walls.unit or end - start < smallest * walls.high:
             raise ValueError(
                 f"openings leave a piece of {right - left:.3g} x {end - start:.3g} m at y = {left:g} m in course "
                 f"{course}; the valid range begins at {SMALLEST_PIECE} of a unit, {walls.unit:.4g} x {walls.high:.4g} m"
             )
         inner = [
-            head for head in walls.heads(course) if left + least * walls.unit <= head <= right - least * walls.unit
+            head
+            for head in walls.heads(course)
+            if left + smallest * walls.unit <= head <= right - smallest * walls.unit
         ]
-        pieces += [(one, other, start, end) for one, other in pairwise([left, *inner, right])]
+        pieces += [(start_y, end_y, start, end) for start_y, end_y in pairwise([left, *inner, right])]
     return pieces
 
 
@@ -435,9 +437,9 @@ def corner(
 
     post = Polyhedron.box((t, t, height), (-0.5 * t, 0.5 * t, 0.5 * height), density, name="corner")
     turning = [post, *along([(0.0, 0.0), (0.0, height), (long, height)])] if long > 0 else [post]
-    rest = along([(0.0, 0.0), (long, height), (end, height), (end, 0.0)], "rest")
+    staying = along([(0.0, 0.0), (long, height), (end, height), (end, 0.0)], "rest")
     ground = ground_below((-t - end, 0.0, 0.0), (0.0, t + end, height))
-    return [ground, Compound(turning, name="corner") if long > 0 else post, *rest]
+    return [ground, Compound(turning, name="corner") if long > 0 else post, *staying]
 
 
 @friction_of(guide=0.0, ground=0.0)
@@ -473,9 +475,9 @@ def between_sides(bending: HorizontalBending) -> list[Polyhedron]:
         size = front - back, right - left, high
         return Polyhedron.box(size, middle, bending.wall.density, name.startswith("guide"), name)
 
-    whole, guides = (0.0, t), ((-t, 0.0), (t, 2 * t))
-    blocks = [part("left", whole, (-half, crack)), part("right", whole, (crack, half))]
-    blocks += [part("side_0", whole, (-half - t, -half)), part("side_1", whole, (half, half + t))]
+    through, guides = (0.0, t), ((-t, 0.0), (t, 2 * t))
+    blocks = [part("left", through, (-half, crack)), part("right", through, (crack, half))]
+    blocks += [part("side_0", through, (-half - t, -half)), part("side_1", through, (half, half + t))]
     beyond = half + 0.5 * t, half + 2.5 * t
     directions = [(x, (-beyond[1], -beyond[0])) for x in guides] + [(x, beyond) for x in guides]
     blocks += [part(f"guide_{i}", x, y) for i, (x, y) in enumerate(directions)]
@@ -505,8 +507,8 @@ def wallette_of(blocks: Sequence[Polygon], unit: float, leaves: int, headers: in
             centre = -0.5 * (front + back), 0.5 * (a + b) - middle, 0.5 * (low + high)
             boxes.append((block, part, size, centre))
     if len(boxes) > MOST_BODIES:
-        many = f"leaves = {leaves} and headers = {headers} make a wall of {len(boxes)} blocks"
-        raise ValueError(f"{many}; the valid range ends at {MOST_BODIES}")
+        request = f"leaves = {leaves} and headers = {headers} make a wall of {len(boxes)} blocks"
+        raise ValueError(f"{request}; the valid range ends at {MOST_BODIES}")
     return [Polyhedron.box(size, centre, block.density, block.fixed, part) for block, part, size, centre in boxes]
 
 

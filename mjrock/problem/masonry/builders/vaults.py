@@ -122,13 +122,13 @@ def barrel_vault(
     """
     unit = require_within("unit", unit, 1e-2, length, "m")
     left, *strips, right = voussoirs_of(radius, thickness, span_angle, courses, density, 1.0)
-    whole = round(length / unit)
-    if len(strips) * (whole + 1) >= MOST_BODIES:
+    units = round(length / unit)
+    if len(strips) * (units + 1) >= MOST_BODIES:
         raise ValueError(f"unit = {unit:g} m makes a vault of more blocks than {MOST_BODIES}")
-    fitted = length / whole
+    fitted = length / units
     blocks = [_laid(left, (0.0, length), left.name)]
     for i, course in enumerate(strips):
-        heads = fitted * (np.arange(1, whole) if i % 2 == 0 else np.arange(whole) + 0.5)
+        heads = fitted * (np.arange(1, units) if i % 2 == 0 else np.arange(units) + 0.5)
         for j, ends in enumerate(pairwise([0.0, *heads.tolist(), length])):
             blocks.append(_laid(course, ends, f"{course.name}_{j}"))
     return [*blocks, _laid(right, (0.0, length), right.name)]
@@ -192,8 +192,8 @@ def groin_vault(
         for k, side in enumerate(SIDES):
             corner = "_".join(sorted((side, SIDES[(k + 1) % 4] if 2 * i < last else SIDES[k - 1])))
             name = "keystone" if 2 * i == last else f"groin_{corner}_{level - 1}" if level else f"pier_{corner}"
-            stones.setdefault(name, []).append(_of_web(strip, arm, k, f"{name}_{side}", crown=2 * i == last))
-            webs += [_of_web(strip, ends, k, f"web_{side}_{i - 1}_{j}") for j, ends in enumerate(units)]
+            stones.setdefault(name, []).append(_web_course(strip, arm, k, f"{name}_{side}", crown=2 * i == last))
+            webs += [_web_course(strip, ends, k, f"web_{side}_{i - 1}_{j}") for j, ends in enumerate(units)]
     groins: list[SolidBlock] = []
     for name, parts in stones.items():
         fixed = name.startswith("pier")
@@ -201,7 +201,7 @@ def groin_vault(
     return [*groins, *webs]
 
 
-def _of_web(polygon: Polygon, ends: tuple[float, float], turns: int, name: str, crown: bool = False) -> Polyhedron:
+def _web_course(polygon: Polygon, ends: tuple[float, float], turns: int, name: str, crown: bool = False) -> Polyhedron:
     """The part of a course of a web between two distances y from the middle of the bay, the larger one first [m].
 
     The course ends at the groins, where y = |x|, which meet above the middle in the course at the crown.

@@ -231,7 +231,7 @@ def mesh_bodies(mesh: Mesh) -> list[Mesh]:
         part += not open_edges
         if part > MOST_BODIES:
             raise ValueError(f"body {mesh.name} is more than {MOST_BODIES} closed bodies, which is the most")
-    bodies = [mesh._replace(vertices=each, faces=rings) for each, rings in _apart(places, faces, parts)]
+    bodies = [mesh._replace(vertices=corners, faces=rings) for corners, rings in _separate_bodies(places, faces, parts)]
     if not bodies:
         raise ValueError(f"body {mesh.name} has no faces")
     if open_edges and not all(is_plate(body) or not _open_edges(body) for body in bodies):
@@ -260,19 +260,19 @@ def _all_bodies(meshes: Sequence[Mesh]) -> list[Mesh]:
     return [body if count[body.name] == 1 else body._replace(name=f"{body.name}_{i}") for i, body in enumerate(bodies)]
 
 
-def _apart(places: Array, faces: MeshFaces, parts: list[int]) -> list[tuple[Array, MeshFaces]]:
+def _separate_bodies(places: Array, faces: MeshFaces, parts: list[int]) -> list[tuple[Array, MeshFaces]]:
     """The vertices and faces of bodies: of one part, and hanging together by their vertices."""
-    own: dict[tuple[int, int], int] = {}  # a vertex counts once in each part
+    number_of: dict[tuple[int, int], int] = {}  # a vertex counts once in each part
     pairs = []
     for face, part in zip(faces, parts, strict=True):
-        numbers = [own.setdefault((part, vertex), len(own)) for vertex in face]
+        numbers = [number_of.setdefault((part, vertex), len(number_of)) for vertex in face]
         pairs += [(numbers[0], number) for number in numbers]
     if not pairs:
         return []
-    labels = connected_parts(pairs, len(own)).tolist()
+    labels = connected_parts(pairs, len(number_of)).tolist()
     shells: dict[int, MeshFaces] = {}
     for face, part in zip(faces, parts, strict=True):
-        shells.setdefault(labels[own[part, face[0]]], []).append(face)
+        shells.setdefault(labels[number_of[part, face[0]]], []).append(face)
     return [used(places, shell) for shell in shells.values()]
 
 
@@ -388,7 +388,7 @@ def blocks_of(meshes: Sequence[Mesh], file: FileOptions) -> list[SolidBlock]:
     if dented and convex != "parts":
         _warn_of_dents(dented, bounds, convex)
     cut = {bound.body.name for bound in dented} if convex == "parts" else set()
-    return [_cut(bound, density) if bound.body.name in cut else _whole(bound, density) for bound in bounds]
+    return [_cut_block(bound, density) if bound.body.name in cut else _hull_block(bound, density) for bound in bounds]
 
 
 def _support(body: Mesh, middle: Array) -> Mesh:
@@ -407,21 +407,21 @@ def _support(body: Mesh, middle: Array) -> Mesh:
 
 def _warn_of_dents(dented: Sequence[Bound], bounds: Sequence[Bound], convex: str | None) -> None:
     """Warn of the volume that the hulls of bodies which are not convex add, or refuse these."""
-    most, total = dented[0], sum(bound.enclosed for bound in bounds)
-    whole = sum(bound.of_hull - bound.enclosed for bound in dented) / total
+    worst, total = dented[0], sum(bound.enclosed for bound in bounds)
+    added = sum(bound.of_hull - bound.enclosed for bound in dented) / total
     if convex == "hull":
         names = named([f"{bound.body.name} {bound.added:.2%}" for bound in dented])
-        warn_of(f"convex='hull' adds volume to {len(dented)} bodies: {names}; to all {whole:.2%}")
+        warn_of(f"convex='hull' adds volume to {len(dented)} bodies: {names}; to all {added:.2%}")
         return
     others = f", the most of {len(dented)} such bodies of {len(bounds)}" if len(dented) > 1 else ""
     raise ValueError(
-        f"body {most.body.name} is not convex: its faces enclose {most.enclosed:.4g} m3 within their hull of "
-        f"{most.of_hull:.4g} m3{others}; convex='hull' takes hulls, which adds {whole:.2%} to the volume of all, and "
+        f"body {worst.body.name} is not convex: its faces enclose {worst.enclosed:.4g} m3 within their hull of "
+        f"{worst.of_hull:.4g} m3{others}; convex='hull' takes hulls, which adds {added:.2%} to the volume of all, and "
         "convex='parts' cuts into convex parts"
     )
 
 
-def _whole(bound: Bound, density: float) -> Polyhedron:
+def _hull_block(bound: Bound, density: float) -> Polyhedron:
     """The hull of a body as a block."""
     body, corners = bound.body, bound.body.vertices[list(bound.hull.corners)]
     with about(f"body {body.name}", (ValueError, TypeError)):
@@ -430,7 +430,7 @@ def _whole(bound: Bound, density: float) -> Polyhedron:
         return Polyhedron(corners, density if body.density is None else body.density, body.fixed, body.name)
 
 
-def _cut(bound: Bound, density: float) -> SolidBlock:
+def _cut_block(bound: Bound, density: float) -> SolidBlock:
     """A body that is not convex as a unit of convex parts, which fill it."""
     body, parts = bound.body, list[Polyhedron]()
     try:
@@ -441,7 +441,7 @@ def _cut(bound: Bound, density: float) -> SolidBlock:
         filled = sum(part.volume for part in parts)
         if abs(filled / bound.enclosed - 1) > SAME_VOLUME:
             raise ValueError(f"parts fill {filled:.4g} m3 of {bound.enclosed:.4g} m3; do its faces cross?")
-        return Compound(parts, body.fixed, body.name) if len(parts) > 1 else _whole(bound, density)
+        return Compound(parts, body.fixed, body.name) if len(parts) > 1 else _hull_block(bound, density)
     except (ValueError, TypeError) as error:
         raise ValueError(
             f"body {body.name} is not convex, and cannot be cut into parts: {error}; convex='hull' takes its hull, "

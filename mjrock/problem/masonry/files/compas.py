@@ -39,8 +39,8 @@ def read_compas(path: AnyPath) -> list[Mesh]:
         path: of the file. The density of the material of a block replaces `density`.
     """
     try:
-        content = _inside(json.loads(file_text(path)))
-        content = _inside(content["model"]) if "model" in content else content  # a problem up to compas_dem 0.5 has it
+        content = _data_of(json.loads(file_text(path)))
+        content = _data_of(content["model"]) if "model" in content else content  # a problem up to compas_dem 0.5 has it
         pairs = _parts(content)
     except (json.JSONDecodeError, RecursionError) as error:
         raise ValueError(f"it is not JSON, or is cut short: {error}") from None
@@ -52,7 +52,7 @@ def read_compas(path: AnyPath) -> list[Mesh]:
     meshes = []
     for key, part in pairs:
         try:
-            meshes.append(_block(_inside(part), key, materials))
+            meshes.append(_block(_data_of(part), key, materials))
         except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError):
             raise ValueError(
                 f"the element {key} is not a block with a mesh, which has x, y and z of each vertex, and faces that "
@@ -63,7 +63,7 @@ def read_compas(path: AnyPath) -> list[Mesh]:
     return meshes
 
 
-def _inside(part: object) -> Any:
+def _data_of(part: object) -> Any:
     """What a part of a file holds: under `data` since COMPAS 2, under `value` before, and at times in a list of one."""
     while True:
         if isinstance(part, list) and len(part) == 1:
@@ -81,7 +81,7 @@ def _parts(content: Part | list[Part]) -> list[tuple[object, Part]]:
     supports.
     """
     if isinstance(content, list):
-        if not all(isinstance(_inside(part), dict) for part in content):
+        if not all(isinstance(_data_of(part), dict) for part in content):
             raise TypeError
         return list(enumerate(content))
     if "vertex" in content and "face" in content:
@@ -94,20 +94,20 @@ def _parts(content: Part | list[Part]) -> list[tuple[object, Part]]:
         nodes, blocks = network.get("node") or network.get("vertex") or {}, content["blocks"]
         pairs = list(blocks.items() if isinstance(blocks, dict) else enumerate(blocks))
         return [(key, {"block": block, **(nodes.get(str(key)) or {})}) for key, block in pairs]
-    return list((_inside(content["graph"]) if "graph" in content else content)["node"].items())
+    return list((_data_of(content["graph"]) if "graph" in content else content)["node"].items())
 
 
 def _block(part: Part, key: object, materials: Part) -> Mesh:
     """A block: an element of a model, a node of an assembly, or a mesh."""
     entry = next((name for name in ("geometry", "shape", "block") if name in part), None)
-    shape = _inside(part if entry is None else part[entry])
+    shape = _data_of(part if entry is None else part[entry])
     order = {str(vertex): i for i, vertex in enumerate(shape["vertex"])}
     places = np.array([[float(vertex[axis]) for axis in "xyz"] for vertex in shape["vertex"].values()])
     faces = [tuple(order[str(vertex)] for vertex in face) for face in shape["face"].values()]
     if part.get("transformation"):
-        matrix = np.array(_inside(part["transformation"])["matrix"], dtype=float)
+        matrix = np.array(_data_of(part["transformation"])["matrix"], dtype=float)
         places = places @ matrix[:3, :3].T + matrix[:3, 3]
-    density = _inside(materials.get(str(part.get("material")), {})).get("density")
+    density = _data_of(materials.get(str(part.get("material")), {})).get("density")
     name = block_name(str(part.get("name") or ""), "block" if entry == "geometry" else f"block_{key}")
     return Mesh(name, places, faces, bool(part.get("is_support", False)), density)
 

@@ -89,17 +89,17 @@ def read_dxf(path: Path, layers: Sequence[str] | None) -> DxfDrawing:
         unit = _read_by_library(lambda: units.conversion_factor(InsertUnits(document.units), InsertUnits.Meters))
     space = document.modelspace()
     _read_by_library(_require_few, document, space)
-    entities = _read_by_library(lambda: list(_inserted(space)))
+    entities = _read_by_library(lambda: list(_with_inserted(space)))
     layer_names = _read_by_library(lambda: {entity.dxf.layer: None for entity in entities})
     for layer in layers or ():
         if layer not in layer_names:
             raise ValueError(f"layers = {layer!r} holds nothing; the layers are {named(list(layer_names))}")
-    every, others = _outlines([each for each in entities if layers is None or each.dxf.layer in layers])
+    every, others = _outlines([entity for entity in entities if layers is None or entity.dxf.layer in layers])
     if repairs := [*auditor.errors, *auditor.fixes]:
         text = named([" ".join(str(repair.message).split())[:120] for repair in repairs])
         warn_of(f"path = {path} is damaged, and was repaired while it was read: {text}")
     first: dict[bytes, Outline] = {}
-    if repeated := [one.name for one in every if first.setdefault(_places(one), one) is not one]:
+    if repeated := [outline.name for outline in every if first.setdefault(_places(outline), outline) is not outline]:
         warn_of(f"path = {path}: {len(repeated)} outlines are drawn twice, and read once: {named(repeated)}")
     outlines = list(first.values())
     if ignored := {kind: count for kind, count in others.items() if kind in AREAS}:
@@ -134,17 +134,17 @@ def _places(outline: Outline) -> bytes:
 
 def _counted(counts: Mapping[str, int]) -> str:
     """Kinds of things and how many of each, in words."""
-    return ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
+    return ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))
 
 
 class DrawingError(ValueError):
     """A polyline that is no outline of a block, or inserted blocks that hold each other or are too many."""
 
 
-def _read_by_library(call: Callable[P, Result], *given: P.args, **options: P.kwargs) -> Result:
+def _read_by_library(call: Callable[P, Result], *arguments: P.args, **options: P.kwargs) -> Result:
     """What a call into the library of drawings returns. Raises a ValueError for any error of it."""
     try:
-        return call(*given, **options)
+        return call(*arguments, **options)
     except DrawingError:
         raise
     except Exception as error:  # a damaged file ends in IndexError, AttributeError, AssertionError and others there
@@ -194,15 +194,15 @@ def _require_few(document: Drawing, space: Iterable[DXFEntity]) -> None:
         return counts[name]
 
     total = counted(space, ())
-    for count, subject, most in (
+    for count, subject, allowed in (
         (total.outlines, "outlines", MOST_BODIES),
         (total.inserted, "things that are inserted", MOST_INSERTED),
     ):
-        if count > most:
-            raise DrawingError(f"there are {count:.3g} {subject}, and at most {most} are taken")
+        if count > allowed:
+            raise DrawingError(f"there are {count:.3g} {subject}, and at most {allowed} are taken")
 
 
-def _inserted(entities: Iterable[DXFEntity]) -> Iterator[DXFEntity]:
+def _with_inserted(entities: Iterable[DXFEntity]) -> Iterator[DXFEntity]:
     """Entities with those of inserted blocks, where they are inserted."""
     for entity in entities:
         if not _is_insert(entity):
@@ -210,7 +210,7 @@ def _inserted(entities: Iterable[DXFEntity]) -> Iterator[DXFEntity]:
             continue
         if entity.dxf.zscale == 0.0:  # as some programs write it into plane drawings, and the library cannot turn it
             entity.dxf.zscale = 1.0
-        yield from _inserted(entity.multi_insert() if entity.mcount > 1 else entity.virtual_entities())
+        yield from _with_inserted(entity.multi_insert() if entity.mcount > 1 else entity.virtual_entities())
 
 
 def _corners(polyline: LWPolyline | Polyline) -> Array:
@@ -280,11 +280,11 @@ def polygons_of(drawing: DxfDrawing, file: FileOptions, density: OfLayer, length
                 dented[outline.name] = Mesh(outline.name, places, list(faces), is_fixed), density_and_length
     meshes = [mesh for mesh, _ in dented.values()]
     for block in blocks_of(meshes, FileOptions(convex=file.convex)) if meshes else ():
-        polygons[str(block.name)] = _flat(block, dented[str(block.name)][1])
+        polygons[str(block.name)] = _block_in_plane(block, dented[str(block.name)][1])
     return [polygons[outline.name] for outline in drawing.outlines]
 
 
-def _flat(block: SolidBlock, density_and_length: tuple[float, float]) -> FlatBlock:
+def _block_in_plane(block: SolidBlock, density_and_length: tuple[float, float]) -> FlatBlock:
     """A prism along y as a block of the plane, with its density and length."""
     polygons = []
     for part in block.parts:

@@ -45,9 +45,9 @@ def read_lmgc90(path: AnyPath) -> list[Mesh]:
     body_texts = list(BODY_OF_LMGC90.finditer(file_text(bodies)))
     if not body_texts:
         raise ValueError("it has no $bdyty: it is not a file BODIES.DAT of LMGC90, or is cut short")
-    materials = {name: _value(text) for name, text in MATERIAL.findall(_beside(bodies, "BULK_BEHAV.DAT"))}
-    frames = {number: _values(text) for number, text in _rigid(_beside(bodies, "DOF.INI")).items()}
-    driven = {number: _driven(text) for number, text in _rigid(_beside(bodies, "DRV_DOF.DAT")).items()}
+    materials = {name: _value(text) for name, text in MATERIAL.findall(_text_beside(bodies, "BULK_BEHAV.DAT"))}
+    frames = {number: _values(text) for number, text in _rigid(_text_beside(bodies, "DOF.INI")).items()}
+    driven = {number: _driven(text) for number, text in _rigid(_text_beside(bodies, "DRV_DOF.DAT")).items()}
     meshes, others = [], Counter[str]()
     for kind, digits, text in (body.groups() for body in body_texts):
         number = int(digits)
@@ -77,7 +77,7 @@ def read_lmgc90(path: AnyPath) -> list[Mesh]:
     return meshes
 
 
-def _beside(bodies: Path, name: str) -> str:
+def _text_beside(bodies: Path, name: str) -> str:
     """The text of another file of the folder, empty with a warning where it is missing."""
     path = bodies.parent / name
     if not path.is_file():

@@ -52,20 +52,20 @@ def read_obj(path: AnyPath) -> list[Mesh]:
     faces: dict[tuple[str, str], list[tuple[int, ...]]] = {}
     label, group = "", ""
     for count, line in enumerate(file_text(path).replace("\\\n", " ").splitlines(), 1):
-        kind, _, rest = line.partition("#")[0].strip().partition(" ")
+        keyword, _, content = line.partition("#")[0].strip().partition(" ")
         try:
-            if kind == "v":
-                vertices.append(_triple(rest.split()[:3]))
-            elif kind == "f":
-                corners = [int(corner.split("/")[0]) for corner in rest.split()]
+            if keyword == "v":
+                vertices.append(_triple(content.split()[:3]))
+            elif keyword == "f":
+                corners = [int(corner.split("/")[0]) for corner in content.split()]
                 face = tuple(i - 1 if i > 0 else len(vertices) + i for i in corners)
                 if len(face) < 3 or 0 in corners or not all(0 <= i < len(vertices) for i in face):
                     raise ValueError
                 faces.setdefault((label, group), []).append(face)
-            elif kind == "o":
-                label, group = rest.strip(), ""
-            elif kind == "g":
-                group = rest.strip()
+            elif keyword == "o":
+                label, group = content.strip(), ""
+            elif keyword == "g":
+                group = content.strip()
         except ValueError:
             raise ValueError(f"line {count}: {line[:60]!r} is not a vertex or face of an OBJ file") from None
     if not faces:
@@ -97,17 +97,17 @@ def read_stl(path: AnyPath) -> list[Mesh]:
     corners: list[tuple[float, float, float]] = []
     for count, line in enumerate(file_text(path).splitlines(), 1):
         words = line.split()
-        kind = words[0].lower() if words else ""
-        if kind == "solid":
+        keyword = words[0].lower() if words else ""
+        if keyword == "solid":
             name, corners, is_open = block_name(" ".join(words[1:]), f"body_{len(meshes)}"), [], True
-        elif kind == "vertex":
+        elif keyword == "vertex":
             try:
                 corners.append(_triple(words[1:]))
             except ValueError:
                 raise ValueError(f"line {count}: {line[:60]!r} is not a vertex of an STL file") from None
-        elif kind in ("endfacet", "endsolid") and len(corners) % 3:
+        elif keyword in ("endfacet", "endsolid") and len(corners) % 3:
             raise ValueError(f"line {count}: a facet of an STL file has three vertices")
-        elif kind == "endsolid":
+        elif keyword == "endsolid":
             meshes.append(_facets(name, np.reshape(corners, (-1, 3))))
             is_open = False
     if is_open or not meshes:

@@ -84,26 +84,26 @@ class Bond:
 
     def __post_init__(self) -> None:
         if (self.crushing is None) != (self.crushing_energy is None):
-            given = f"crushing = {self.crushing}, crushing_energy = {self.crushing_energy}"
-            raise ValueError(f"{given}: give both of them, or neither")
+            crushing = f"crushing = {self.crushing}, crushing_energy = {self.crushing_energy}"
+            raise ValueError(f"{crushing}: give both of them, or neither")
         keep_declared(self)
         keep(self, damped=require_flag("damped", self.damped))
         if self.hardening is not None:
             if self.crushing is None:
                 raise ValueError(f"hardening = {self.hardening} needs crushing and crushing_energy; give them, or None")
             if self.energy_of_hardening >= float(self.crushing_energy or 0.0):
-                most = self.hardening * float(self.crushing_energy or 0.0) / self.energy_of_hardening
+                longest = self.hardening * float(self.crushing_energy or 0.0) / self.energy_of_hardening
                 raise ValueError(
                     f"hardening = {self.hardening:g} m would take {self.energy_of_hardening:g} J/m2 of the "
-                    f"crushing_energy = {self.crushing_energy:g} J/m2; the valid range is 1e-9 to {most:g} m"
+                    f"crushing_energy = {self.crushing_energy:g} J/m2; the valid range is 1e-9 to {longest:g} m"
                 )
         if self.cohesion > 0 and self.tension == 0:
             raise ValueError(
                 f"cohesion = {self.cohesion:g} Pa with a tension of 0: cohesion ends where a joint opens; the valid "
                 "range of the tension is then above 0"
             )
-        if odd := self._doubt():
-            warn_of(odd, Implausible)
+        if doubt := self._doubt():
+            warn_of(doubt, Implausible)
 
     def _doubt(self) -> str:
         """What is odd about strengths and energies, in words, empty where nothing is."""
@@ -136,7 +136,7 @@ class Bond:
         if self.residual_friction is not None:
             require_within(f"residual_friction of {joint}", self.residual_friction, 0.0, friction)
         if self.steepest > k_n:
-            stiff, tough = (ROUNDED_UP * least for least in (self.steepest, self.crushing_energy_on(k_n)))
+            stiff, tough = (ROUNDED_UP * required for required in (self.steepest, self.crushing_energy_on(k_n)))
             raise ValueError(
                 f"bond of {joint}: its spring of k_n = {k_n:g} N/m3 gives back more than crushing takes; the "
                 f"valid range of k_n is {stiff:.3g} N/m3 or more with this crushing_energy, and that of the "

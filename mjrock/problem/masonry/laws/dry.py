@@ -53,8 +53,8 @@ class Dry:
     law: OwnLaw | None = None
 
     def __repr__(self) -> str:
-        given = {name: value for name, value in vars(self).items() if value is not None}
-        parts = {name: format(value, "g") if isinstance(value, Real) else repr(value) for name, value in given.items()}
+        values = {name: value for name, value in vars(self).items() if value is not None}
+        parts = {name: format(value, "g") if isinstance(value, Real) else repr(value) for name, value in values.items()}
         return f"Dry({', '.join(f'{name}={value}' for name, value in parts.items())})"
 
     def __post_init__(self) -> None:
@@ -167,22 +167,22 @@ def requested_pair(pairs: AnyPairs, one: str, other: str) -> Dry | None:
     if not callable(pairs):
         return pairs
     try:
-        given = pairs(one, other)
+        requested = pairs(one, other)
     except TypeError as error:
         raise TypeError(f"pairs = {shown(pairs)} is not called as pairs(one, other): {error}") from None
-    return _rubbing(f"pairs of {one} and {other}", given)
+    return _rubbing(f"pairs of {one} and {other}", requested)
 
 
 def _rubbing(name: str, dry: Dry | None) -> Dry | None:
     """A joint of which friction and damping alone are given, or None."""
     require_kind(name, dry, Dry, type(None))
     if dry is not None:
-        odd = [
-            each.name for each in fields(dry) if each.name not in RUBBING and getattr(dry, each.name) != each.default
+        others = [
+            item.name for item in fields(dry) if item.name not in RUBBING and getattr(dry, item.name) != item.default
         ]
-        if odd:
+        if others:
             raise ValueError(
-                f"{name} has {', '.join(odd)}; {', '.join(RUBBING)} are taken: the springs of two blocks without a "
+                f"{name} has {', '.join(others)}; {', '.join(RUBBING)} are taken: the springs of two blocks without a "
                 "joint follow from those of their own joints"
             )
     return dry

@@ -81,7 +81,7 @@ def properties_of(joints: AnyJoints | None, given: Properties) -> Properties:
 def has_function(value: object) -> bool:
     """Whether a value is, or has in its fields, a function, which has no content to compare or to write."""
     if is_dataclass(value) and not isinstance(value, type):
-        return any(has_function(getattr(value, each.name)) for each in fields(value))
+        return any(has_function(getattr(value, entry.name)) for entry in fields(value))
     if isinstance(value, tuple | list):
         return any(map(has_function, value))
     return callable(value)
@@ -243,7 +243,7 @@ class JointTable(NamedTuple):
                 POINTS_IN_SPACE.checked(f"points of {joint.name}" if callable(values["points"]) else "points", count)
         bonds = _bonds(values["bond"], joints, columns)
         dry = [bond.further if isinstance(bond, Dry) else NONE_FURTHER for bond in bonds]
-        further = {name: np.array([each[name] for each in dry]) for name in NONE_FURTHER}
+        further = {name: np.array([numbers_of_bond[name] for numbers_of_bond in dry]) for name in NONE_FURTHER}
         laws = tuple(None if isinstance(bond, Dry) else bond for bond in bonds)
         table = cls(**columns, points=points, bonds=laws, further=further)
         springs = (column.tolist() for column in (table.k_n, table.k_s, table.friction, points))
@@ -275,10 +275,10 @@ class JointTable(NamedTuple):
         if any(laws):
             unknown[f"law of {names(laws)}"] = ", ".join(sorted({bond.name for bond in laws if bond}))
         for label, name in unknown.items():
-            rest = "it" if name in numbers else "laws of your own"
+            takes = "it" if name in numbers else "laws of your own"
             raise ValueError(
                 f"{label}: {what} knows {', '.join(known[:-1])} and {known[-1]} of a joint, and no {name}; "
-                f"solve_explicit takes {rest}"
+                f"solve_explicit takes {takes}"
             )
         if any(self.bonds):
             raise ValueError(
@@ -289,7 +289,9 @@ class JointTable(NamedTuple):
     def residual_friction(self) -> Array:
         """Coefficient of friction of joints that have lost their bond [-], shape (joints,)."""
         residual = [bond and bond.residual_friction for bond in self.bonds]
-        return np.array([whole if left is None else left for left, whole in zip(residual, self.friction, strict=True)])
+        return np.array(
+            [intact if left is None else left for left, intact in zip(residual, self.friction, strict=True)]
+        )
 
 
 def _values(name: str, value_of: OfJoint | None, joints: Sequence[AnyJoint]) -> Array:
@@ -346,9 +348,9 @@ class JointOptions(OtherOptions, total=False):
 
 def one_by_one(options: JointOptions) -> Properties:
     """The keywords with the properties of joints one by one in the place of `joints`."""
-    given = Properties(options)
-    properties = {name: given.pop(name, None) for name in PROPERTIES}
-    return properties_of(given.pop("joints", None), properties) | given
+    keywords = Properties(options)
+    properties = {name: keywords.pop(name, None) for name in PROPERTIES}
+    return properties_of(keywords.pop("joints", None), properties) | keywords
 
 
 def keywords_checked(kind: Class) -> Class:
@@ -365,18 +367,18 @@ def with_known_keywords(function: Callable[..., object], label: str) -> Callable
     """A function that checks declared ranges, and refuses a keyword that it does not take with the nearest one that it
     does."""
     parameters = list(inspect.signature(function).parameters.values())[1:]
-    known = [each.name for each in parameters if each.kind is not each.VAR_KEYWORD]
+    known = [parameter.name for parameter in parameters if parameter.kind is not parameter.VAR_KEYWORD]
     if len(known) < len(parameters):
         known += [name for name in JointOptions.__annotations__ if name not in known]
 
     run = within_ranges(function)
 
     @wraps(function)
-    def called(*given: object, **options: object) -> object:
-        for each in sorted(options.keys() - set(known)):
-            near = difflib.get_close_matches(each, known, 2)
+    def called(*arguments: object, **options: object) -> object:
+        for unknown in sorted(options.keys() - set(known)):
+            near = difflib.get_close_matches(unknown, known, 2)
             remedy = f"did you mean {' or '.join(near)}?" if near else f"the valid keywords are {', '.join(known)}"
-            raise TypeError(f"{label} does not take {each}; {remedy}")
-        return run(*given, **options)
+            raise TypeError(f"{label} does not take {unknown}; {remedy}")
+        return run(*arguments, **options)
 
     return called

@@ -47,9 +47,9 @@ class OwnLaw(UserLaw):
         return 0.0
 
     @classmethod
-    def answering(cls, made: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
+    def answering(cls, compile_method: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
         """Its dashpot answers by itself."""
-        stress, energy, damping, remember, lost = (made(getattr(cls, name)) for name in cls.methods)
+        stress, energy, damping, remember, lost = (compile_method(getattr(cls, name)) for name in cls.methods)
         remembers = bool(cls.memory)
 
         def answer(row: Any, closing: float, rate: float) -> None:
@@ -150,32 +150,32 @@ class Own(AppliedLaw):
 
 
 @lru_cache(maxsize=256)
-def _pulls(own: Own) -> bool:
-    return any(own.answer(-share * own.closing_at(PRESSURES[-1])).stress < 0 for share in PROBED)
+def _pulls(law: Own) -> bool:
+    return any(law.answer(-share * law.closing_at(PRESSURES[-1])).stress < 0 for share in PROBED)
 
 
 @lru_cache(maxsize=256)
-def require_lawful(own: Own) -> None:
+def require_lawful(law: Own) -> None:
     """Raise an error for a law that pushes where it is open, pulls where it is closed, drives what it should damp, or
     whose energy is not the integral of its stress."""
-    scale, name = own.closing_at(PRESSURES[-1]), own.name
-    rest = own.answer(0.0)
-    for answer, value in (("stress", rest.stress), ("energy", rest.energy)):
+    scale, name = law.closing_at(PRESSURES[-1]), law.name
+    at_rest = law.answer(0.0)
+    for answer, value in (("stress", at_rest.stress), ("energy", at_rest.energy)):
         if value != 0:
             raise ValueError(f"{name}.{answer} is {value:g} where a joint is neither closed nor open; 0 is needed")
     for share in PROBED:
         for sign, verb in ((1.0, "pulls where it is closed"), (-1.0, "presses where it is open")):
             closing = sign * share * scale
-            if sign * (stress := own.answer(closing).stress) < 0:
+            if sign * (stress := law.answer(closing).stress) < 0:
                 raise ValueError(f"{name}.stress is {stress:g} Pa at a closing of {closing:g} m: the law {verb}")
             for rate in (*RATES, *(-rate for rate in RATES)):
-                if (damping := own.answer(closing, rate).damping) * rate < 0:
+                if (damping := law.answer(closing, rate).damping) * rate < 0:
                     raise ValueError(
                         f"{name}.damping is {damping:g} Pa at a closing of {closing:g} m and a rate of {rate:g} m/s: "
                         "a dashpot acts against the rate of closing, with its sign"
                     )
         for closing in (share * scale, -share * scale):
-            require_integral(own, closing, "J/m2", "stress")
+            require_integral(law, closing, "J/m2", "stress")
 
 
 class OwnSprings(NamedTuple):
@@ -219,7 +219,7 @@ class OwnSprings(NamedTuple):
         """Force [N] and energy [J] of each at the gaps of all contacts and ties [m], shape (n,) each."""
         gaps = gap[self.springs].tolist()
         answers = [law.answer(-gap) for law, gap in zip(self.laws, gaps, strict=True)]
-        return self.area * [each.stress for each in answers], self.area * [each.energy for each in answers]
+        return self.area * [answer.stress for answer in answers], self.area * [answer.energy for answer in answers]
 
     def slopes(self, gap: Array) -> Array:
         """Stiffness of each at the gaps of all contacts and ties [N/m], shape (n,)."""

@@ -187,8 +187,8 @@ class LimitForces(NamedTuple):
     pulls: Array
 
 
-def _associated(problem: LimitProblem, least: float) -> LimitForces | None:
-    """The state of associated friction, None where nothing gives way. The multiplier is `least` at least [-]."""
+def _associated(problem: LimitProblem, lowest_multiplier: float) -> LimitForces | None:
+    """The state of associated friction, None where nothing gives way. The multiplier is at least the lowest one [-]."""
     masonry, constant, grown, tangents, ties = problem
     sizes, friction, total = sizes_of(masonry), masonry.joint_friction, float(np.abs(weight_of(masonry)).sum())
     pressed, lines = cones(masonry, friction, tangents), masonry.lines
@@ -197,12 +197,12 @@ def _associated(problem: LimitProblem, least: float) -> LimitForces | None:
     end = count + len(bonds.limits)
     highest = np.concatenate([np.full(count, np.inf), bonds.limits / total, ties.strength / total, [np.inf]])
     bounds, prices = np.column_stack([np.zeros_like(highest), highest]), np.zeros(len(highest))
-    bounds[-1, 0], prices[-1] = least, -1.0
+    bounds[-1, 0], prices[-1] = lowest_multiplier, -1.0
     columns = hstack([pressed, bonds.columns, ties.columns, raised])
     answer = least_cost(prices, A_eq=columns, b_eq=-constant / total / sizes, bounds=bounds, method=method(masonry))
     if answer.status == 3 or (answer.status == 0 and answer.x[-1] > INFINITE_MULTIPLIER):
         return None  # unbounded
-    if answer.status == 2 and least < 0:
+    if answer.status == 2 and lowest_multiplier < 0:
         raise UnbalancedError("pose: no multiplier of the forces that grow holds the masonry there, either way")
     if answer.status != 0:
         raise ValueError(f"masonry: the programme for its multiplier has no answer: {answer.message}")

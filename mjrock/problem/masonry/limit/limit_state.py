@@ -127,12 +127,12 @@ class Programme:
         edges = cone_edges(problem.tangents)
         rubbing = [rates(masonry.blocks, lines, edge)[leader] for edge in edges]
         limits = np.asarray(shear_limit(masonry.table.laws(lines.joint), 1.0))
-        friction, whole = csr_array((limits, (of_line, np.arange(m))), shape=(len(leader), m)), eye_array(len(leader))
+        friction, unity = (csr_array((limits, (of_line, np.arange(m))), shape=(len(leader), m)), eye_array(len(leader)))
         pressing = rates(masonry.blocks, lines, lines.normal)
         balance = [diags_array(1 / sizes) @ part.T for part in (pressing, *rubbing)]
-        matrix = csc_array(block_array([[*balance, None], [friction, *[-whole] * (len(edges) + 1)]]))
-        rest = csr_array((len(leader), matrix.shape[1] - m))
-        friction_part = csc_array(block_array([[csr_array((len(sizes), m)), None], [friction, rest]]))
+        matrix = csc_array(block_array([[*balance, None], [friction, *[-unity] * (len(edges) + 1)]]))
+        no_rubbing = csr_array((len(leader), matrix.shape[1] - m))
+        friction_part = csc_array(block_array([[csr_array((len(sizes), m)), None], [friction, no_rubbing]]))
         total, none = float(np.abs(weight_of(masonry)).sum()), np.zeros(len(leader))
         down, pushed = (np.append(np.ravel(force) / total / sizes, none) for force in (problem.constant, problem.grown))
         count, yields = len(ties.strength), np.isfinite(ties.strength)
@@ -220,7 +220,9 @@ def states_without_dilatancy(programme: Programme) -> tuple[State, ...]:
     nothing = np.zeros(programme.matrix.shape[1])
     if programme.mechanism(nothing) is None:
         return ()
-    ends = [_descended(programme, _mechanism_near(programme, np.maximum(x, 0.0))) for x in _starts(programme, nothing)]
+    ends = [
+        _descent_end(programme, _mechanism_near(programme, np.maximum(x, 0.0))) for x in _starts(programme, nothing)
+    ]
     limited = [state for state in ends if state is not None and programme.holds(state)]
     states = {round(state.multiplier, DIGITS): state for state in limited}
     if not states:
@@ -269,7 +271,7 @@ def _mechanism_near(programme: Programme, x: Array) -> tuple[Array, Array] | Non
     return None
 
 
-def _descended(programme: Programme, moving: tuple[Array, Array] | None) -> State | None:
+def _descent_end(programme: Programme, moving: tuple[Array, Array] | None) -> State | None:
     """The state at the end of a descent from that of a mechanism, None where it has none.
 
     The first step takes the least multiplier of all forces that belong to the mechanism. The second looks among the

@@ -42,9 +42,9 @@ def pose_of_all(masonry: Masonry, pose: ArrayLike) -> Array:
     """
     blocks, freedom = len(masonry.blocks), masonry.freedom
     moved = at_rest(blocks, freedom).reshape(blocks, freedom.nq)
-    given = require_reals("pose", pose, "a pose of all blocks, or of those that are free")
-    some = list(range(blocks)) if given.shape == moved.shape else list(masonry.free)
-    moved[some] = require_array("pose", given, moved[some].shape)
+    numbers = require_reals("pose", pose, "a pose of all blocks, or of those that are free")
+    moving = list(range(blocks)) if numbers.shape == moved.shape else list(masonry.free)
+    moved[moving] = require_array("pose", numbers, moved[moving].shape)
     if masonry.in_space:
         length = np.linalg.norm(moved[:, 3:], axis=1)
         if (off := np.abs(length - 1)).max() > OFF_UNIT:
@@ -73,9 +73,9 @@ class Moves(NamedTuple):
         """
         moved = pose_of_all(masonry, pose)
         if not masonry.in_space and (turn := np.abs(moved[:, 2])).max() > np.pi:
-            most = moved[turn.argmax(), 2]
+            largest = moved[turn.argmax(), 2]
             raise ValueError(
-                f"pose has a rotation of {most:g} rad; the valid range is -pi to pi, and angles are radians"
+                f"pose has a rotation of {largest:g} rad; the valid range is -pi to pi, and angles are radians"
             )
         d = moved.shape[1] - (4 if masonry.in_space else 1)
         return cls(rotations(moved), masonry.centroids, masonry.centroids + moved[:, :d])
@@ -102,7 +102,7 @@ class Moves(NamedTuple):
         if isinstance(part, Polygon):
             return replace(part, vertices=places)  # type: ignore[arg-type]
         moved = object.__new__(Polyhedron)
-        keep(moved, **{each.name: getattr(part, each.name) for each in fields(part)})
+        keep(moved, **{entry.name: getattr(part, entry.name) for entry in fields(part)})
         hull = part.hull._replace(normals=self.turned(number, part.normals))
         keep(moved, vertices=tuple(map(tuple, places.tolist())), hull=hull)
         return moved
@@ -120,8 +120,8 @@ def posed(masonry: Masonry, pose: ArrayLike, effects: Sequence[Effect] = ()) -> 
     """
     moves = Moves.from_pose(masonry, pose)
     moved = object.__new__(type(masonry))
-    keep(moved, **{each.name: getattr(masonry, each.name) for each in fields(masonry)}, table=masonry.table)
-    lines = _in_the_plane(masonry, moves) if not masonry.in_space else _in_space(masonry, moves)
+    keep(moved, **{entry.name: getattr(masonry, entry.name) for entry in fields(masonry)}, table=masonry.table)
+    lines = _lines_in_plane(masonry, moves) if not masonry.in_space else _lines_in_space(masonry, moves)
     joints = [_joint(joint, moves) for joint in masonry.joints]
     blocks = tuple(moves.block(i, block) for i, block in enumerate(masonry.blocks))
     keep(moved, blocks=blocks, joints=tuple(joints), lines=lines)
@@ -176,16 +176,16 @@ def moved_lines(lines: Lines, moves: Moves) -> MovedLines:
     return MovedLines(at, normal, ((at - moves.at(lines.face, lines.at)) * normal).sum(axis=1))
 
 
-def _in_the_plane(masonry: Masonry, moves: Moves) -> Lines:
+def _lines_in_plane(masonry: Masonry, moves: Moves) -> Lines:
     """The lines that press. Where one has slid past the end of its face, the corner there meets the other face."""
     lines, slack = masonry.lines, masonry.tolerance
     at, normal, gap = moved_lines(lines, moves)
-    faces, own = (_edges(masonry, moves, of, lines.joint) for of in (lines.face, lines.body))
-    along, long = _along(faces, at)
+    faces, edges = (_edges(masonry, moves, blocks, lines.joint) for blocks in (lines.face, lines.body))
+    along, long = _positions_along(faces, at)
     past = (along < -slack) | (along > long + slack)
     corner = np.where((along < 0)[:, None], faces[:, 0], faces[:, 1])
     outward = -moves.turned(lines.body, lines.normal)
-    along, long = _along(own, corner)
+    along, long = _positions_along(edges, corner)
     meets = ~past | ((along > -slack) & (along < long + slack))
     gap = np.where(past, ((corner - at) * outward).sum(axis=1), gap)
     body, face = np.where(past, [lines.face, lines.body], [lines.body, lines.face])
@@ -193,24 +193,24 @@ def _in_the_plane(masonry: Masonry, moves: Moves) -> Lines:
     return _pressed(masonry, lines._replace(body=body, face=face, at=at, normal=normal), np.where(meets, gap, np.inf))
 
 
-def _edges(masonry: Masonry, moves: Moves, of: Integers, joint: Integers) -> Array:
+def _edges(masonry: Masonry, moves: Moves, blocks: Integers, joint: Integers) -> Array:
     """Ends of the edges of some blocks that make joints [m], shape (n, 2, 2)."""
     ends = []
-    for block, number in zip(of.tolist(), joint.tolist(), strict=True):
+    for block, number in zip(blocks.tolist(), joint.tolist(), strict=True):
         below, above = masonry.joints[number].sides
         side = below if block == masonry.joints[number].below else above
         ends.append(moves.at([block] * 2, np.asarray(masonry.blocks[block].sides[side].corners)))
     return np.array(ends)
 
 
-def _along(edges: Array, at: Array) -> tuple[Array, Array]:
+def _positions_along(edges: Array, at: Array) -> tuple[Array, Array]:
     """How far points lie along edges, and how long these are [m], shape (n,) each."""
     direction = edges[:, 1] - edges[:, 0]
     long = np.hypot(*direction.T)
     return ((at - edges[:, 0]) * direction).sum(axis=1) / long, long
 
 
-def _in_space(masonry: Masonry, moves: Moves) -> Lines:
+def _lines_in_space(masonry: Masonry, moves: Moves) -> Lines:
     """The points that press."""
     at, normal, gap = moved_lines(masonry.lines, moves)
     back = (
@@ -233,11 +233,11 @@ def _slid_off(masonry: Masonry, back: Array, pressed: Flags) -> Iterator[tuple[s
     Points are seen from the face, at rest.
     """
     for number, joint in enumerate(masonry.space_joints):
-        for own, side in zip((joint.below, joint.above), joint.sides, strict=True):
-            there = (masonry.lines.joint == number) & (masonry.lines.face == own) & pressed
-            face = (np.asarray(masonry.blocks[own].sides[side].corners) - joint.outline[0]) @ joint.axes.T
-            flat = (back[there] - joint.outline[0]) @ joint.axes.T
-            past = -within(face if own == joint.below else face[::-1], flat).min(initial=0.0)
+        for block, side in zip((joint.below, joint.above), joint.sides, strict=True):
+            presses = (masonry.lines.joint == number) & (masonry.lines.face == block) & pressed
+            face = (np.asarray(masonry.blocks[block].sides[side].corners) - joint.outline[0]) @ joint.axes.T
+            flat = (back[presses] - joint.outline[0]) @ joint.axes.T
+            past = -within(face if block == joint.below else face[::-1], flat).min(initial=0.0)
             if past > FARTHEST_IN_POSE * joint.width:
                 yield joint.name, float(past)
 

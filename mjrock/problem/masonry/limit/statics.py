@@ -212,8 +212,8 @@ def bond_forces(masonry: Masonry, tangents: tuple[Array, ...] | None = None) -> 
     if not any(masonry.bonds):
         none = csc_array((len(masonry.free) * masonry.freedom.nv, 0))
         return BondForces(none, np.zeros(0), directions[:0])
-    both = zip(masonry.joints, masonry.bonds, strict=True)
-    if pulling := [joint.name for joint, bond in both if isinstance(bond, Own) and bond.pulls]:
+    joints_with_bonds = zip(masonry.joints, masonry.bonds, strict=True)
+    if pulling := [joint.name for joint, bond in joints_with_bonds if isinstance(bond, Own) and bond.pulls]:
         raise ValueError(
             f"law of {named(pulling)} pulls: limit analysis knows friction of a joint, tension and cohesion of a Bond, "
             "and no law of your own that pulls; solve_explicit takes it"
