@@ -61,9 +61,9 @@ class Message(str):
 
     def __new__(cls, template: str, /, **values: object) -> Message:
         """Write the template with the values."""
-        made = super().__new__(cls, template.format(**values))
-        made.template, made.values = template, values
-        return made
+        message = super().__new__(cls, template.format(**values))
+        message.template, message.values = template, values
+        return message
 
     def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, object]]:
         return (self.template,), self.values
@@ -108,12 +108,12 @@ def brief(value: object) -> str:
 
 def short_repr(instance: Any) -> str:
     """A dataclass as it would be written, on a line: numbers with six digits, and nothing that has its default."""
-    shown = ((each, getattr(instance, each.name)) for each in fields(instance) if each.repr)
-    arguments = (f"{each.name}={_shortened(value)}" for each, value in shown if not _same(value, each.default))
+    shown = ((field, getattr(instance, field.name)) for field in fields(instance) if field.repr)
+    arguments = (f"{field.name}={_shortened(value)}" for field, value in shown if not _is_default(value, field.default))
     return f"{type(instance).__name__}({', '.join(arguments)})"
 
 
-def _same(value: object, default: object) -> bool:
+def _is_default(value: object, default: object) -> bool:
     return value is default or (isinstance(value, str | int | float | tuple) and value == default)
 
 
@@ -211,14 +211,14 @@ class Within(NamedTuple):
 
 def alternatives(hint: object) -> tuple[object, ...]:
     """The types that a value of a hint may be of, one by one, with those that are noted with it."""
-    origin, of = get_origin(hint), get_args(hint)
+    origin, arguments = get_origin(hint), get_args(hint)
     if origin is Annotated:
-        kinds = (note for note in of[1:] if isinstance(note, type) or get_origin(note) is not None)
-        return (*alternatives(of[0]), *(one for kind in kinds for one in alternatives(kind)))
+        kinds = (note for note in arguments[1:] if isinstance(note, type) or get_origin(note) is not None)
+        return (*alternatives(arguments[0]), *(part for kind in kinds for part in alternatives(kind)))
     if isinstance(hint, TypeVar):
         return alternatives(hint.__bound__) if hint.__bound__ else hint.__constraints__
     if origin in (Union, UnionType):
-        return tuple(one for each in of for one in alternatives(each))
+        return tuple(kind for argument in arguments for kind in alternatives(argument))
     return (hint,)
 
 
@@ -259,8 +259,8 @@ class Declaration(NamedTuple):
         if self.several and not isinstance(value, RealNumber):
             row = require_reals(name, value, "a number or a row of them").ravel()
             low, high, *_ = self.within
-            for each in row if self.within.whole else row[~((low <= row) & (row <= high))]:
-                self.within.checked(name, each)
+            for item in row if self.within.whole else row[~((low <= row) & (row <= high))]:
+                self.within.checked(name, item)
             return value
         return self.within.checked(name, value)
 
@@ -284,8 +284,8 @@ def keep_declared(instance: object, owner: str = "", but: Collection[str] = ()) 
     Raises:
         TypeError, ValueError: with the name, the value and the range, as `require_within`.
     """
-    kind: Callable[..., object] = type(instance)
-    for field, declaration in declared(kind).items():
+    owner_type: Callable[..., object] = type(instance)
+    for field, declaration in declared(owner_type).items():
         if field not in but:
             name = declaration.within.name or (f"{field} of the {owner}" if owner else field)
             keep(instance, **{field: declaration.checked(name, getattr(instance, field))})
@@ -475,5 +475,5 @@ NAMED = 5
 
 def named(names: Sequence[str]) -> str:
     """Names in a message: the first NAMED, and how many more there are."""
-    rest = len(names) - NAMED
-    return ", ".join(names[:NAMED]) + (f" and {rest} more" if rest > 0 else "")
+    further = len(names) - NAMED
+    return ", ".join(names[:NAMED]) + (f" and {further} more" if further > 0 else "")

@@ -43,10 +43,10 @@ def has_names(both: GeomPair, geoms: Sequence[str], bodies: Sequence[str], pair:
         pair: names of its two geoms or bodies, in any order; None are all.
     """
     sides = list(zip(both.labels, both.body_names, strict=True))
-    if (geoms and not _like(both.labels, geoms)) or (bodies and not _like(both.body_names, bodies)):
+    if (geoms and not _fits(both.labels, geoms)) or (bodies and not _fits(both.body_names, bodies)):
         return False
     return pair is None or any(
-        all(_like(side, [pattern]) for side, pattern in zip(order, pair, strict=True)) for order in (sides, sides[::-1])
+        all(_fits(side, [pattern]) for side, pattern in zip(order, pair, strict=True)) for order in (sides, sides[::-1])
     )
 
 
@@ -54,7 +54,7 @@ def require_names(model: mujoco.MjModel, patterns: Sequence[str]) -> None:
     """Raise a ValueError with those names and patterns that no geom and no body of a model has."""
     geoms = [geom_label(model, geom) for geom in range(model.ngeom)]
     names = [*geoms, *(name or f"[{body}]" for body, name in enumerate(names_of_objects(model, BODY)))]
-    unknown = [pattern for pattern in patterns if not _like(names, [pattern])]
+    unknown = [pattern for pattern in patterns if not _fits(names, [pattern])]
     if unknown:
         raise ValueError(f"the model has no geom or body {named(unknown)}; geoms are: {named(geoms)}")
 
@@ -95,8 +95,8 @@ def table_and_notes(found: Sequence[InspectedContact], *, speed: float = 1.0, mo
     head, *body = aligned([list(HEADER), *rows] if most is None else rows_of_page([list(HEADER), *rows]))
     lines = [head, "-" * len(head), *body]
     if most is not None:
-        more = f"and {len(found) - len(shown)} more; " if len(shown) < len(found) else ""
-        lines.append(f"{more}--all shows all rows and columns; --geom, --body and --pair choose")
+        unshown = f"and {len(found) - len(shown)} more; " if len(shown) < len(found) else ""
+        lines.append(f"{unshown}--all shows all rows and columns; --geom, --body and --pair choose")
     else:
         lines.append(f"v is {speed:g} m/s. k loaded carries the static load: that of the pose, or --load.")
     for number, (first, *others) in enumerate(alike.values(), 1):
@@ -144,7 +144,7 @@ def flex_report(model: mujoco.MjModel) -> str:
     return "\n".join(["", "Contacts of flexes, at zero penetration:", *contacts, *remarks])
 
 
-def _like(names: Sequence[str], patterns: Sequence[str]) -> bool:
+def _fits(names: Sequence[str], patterns: Sequence[str]) -> bool:
     """Whether one of the names matches one of the patterns."""
     return any(name == pattern or fnmatchcase(name, pattern) for name in names for pattern in patterns)
 

@@ -215,7 +215,7 @@ class PairContact:
         names = []
         for name, number in zip((self.geom1, self.geom2), self.ids, strict=True):
             if not name:
-                geom = next(each for each in spec.geoms if each.id == number)
+                geom = next(geom_spec for geom_spec in spec.geoms if geom_spec.id == number)
                 geom.name = geom.name or geom_label(whole, number)
             names.append(name or geom.name)
         return replace(self, geom1=names[0], geom2=names[1])
@@ -354,8 +354,8 @@ class PairContacts:
     @property
     def options(self) -> dict[str, Attribute]:
         """The attributes of `<option>` that the contacts need together, by name; see `PairContact.attributes`."""
-        found: dict[str, Attribute] = {"timestep": self.contacts[0].timestep}
-        return found | ({"cone": "elliptic", "impratio": self.impratio} if self.has_friction else {})
+        attributes: dict[str, Attribute] = {"timestep": self.contacts[0].timestep}
+        return attributes | ({"cone": "elliptic", "impratio": self.impratio} if self.has_friction else {})
 
     def apply(
         self,
@@ -384,21 +384,21 @@ class PairContacts:
             ]
         for contact in contacts:
             contact.write_pair(model, whole, on_geoms)
-        for each in (option, whole.opt):
-            each.timestep = h
+        for opt in (option, whole.opt):
+            opt.timestep = h
             if self.has_friction:
-                each.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-                each.impratio = max(float(each.impratio), self.impratio)
+                opt.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+                opt.impratio = max(float(opt.impratio), self.impratio)
             for name in ("iterations", "ls_iterations") if iterations else ():
-                setattr(each, name, max([getattr(each, name), *(getattr(contact.needs, name) for contact in contacts)]))
+                setattr(opt, name, max([getattr(opt, name), *(getattr(contact.needs, name) for contact in contacts)]))
             if iterations:
-                each.impratio = min([float(each.impratio), *(contact.needs.impratio for contact in contacts)])
+                opt.impratio = min([float(opt.impratio), *(contact.needs.impratio for contact in contacts)])
         changes = [StiffnessChange(pair, before, ModelRow.from_pair(pair)) for pair, before in others]
-        changed = [each for each in changes if not math.isclose(*each.stiffness, rel_tol=NOTABLE_CHANGE)]
-        changed = [each for each in changed if not (keep_others and _keep(model, each))]
+        changed = [change for change in changes if not math.isclose(*change.stiffness, rel_tol=NOTABLE_CHANGE)]
+        changed = [change for change in changed if not (keep_others and _keep(model, change))]
         if changed:
             warn_of(changes_message(changed), ContactWarning)
-        for sentence in dict.fromkeys(each for contact in self for each in few_iterations(whole.opt, contact.needs)):
+        for sentence in dict.fromkeys(text for contact in self for text in few_iterations(whole.opt, contact.needs)):
             warn_of(sentence, ContactWarning)
 
     def caveats(self, model: mujoco.MjModel | mujoco.MjSpec, prefix: str = "") -> tuple[str, ...]:
@@ -418,9 +418,9 @@ def merged(sentences: Iterable[tuple[PairContact, str]]) -> Iterator[str]:
     alike: dict[str, dict[str, list[str]]] = {}
     for contact, sentence in sentences:
         alike.setdefault(VARYING_PARTS.sub("#", sentence), {}).setdefault(sentence, []).append(contact.label)
-    for (sentence, about), *others in (each.items() for each in alike.values()):
-        rest = list(dict.fromkeys(label for _, labels in others for label in labels))
-        yield f"{named(about)}: {sentence}" + (f" [and alike for {named(rest)}]" if rest else "")
+    for (sentence, about), *others in (sentences_alike.items() for sentences_alike in alike.values()):
+        further = list(dict.fromkeys(label for _, labels in others for label in labels))
+        yield f"{named(about)}: {sentence}" + (f" [and alike for {named(further)}]" if further else "")
 
 
 def _text(value: Attribute) -> str:
@@ -467,9 +467,9 @@ class StiffnessChange(NamedTuple):
             dw = d
         near, full = (factor * end / (1 - end + factor * end) for end in (d, dw))
         spring = before.spring * math.sqrt(d * dw / (near * full))
-        made = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
-        load, row = self.pair.load, ModelRow(self.pair.model, self.pair.inverse_weight, made)
-        return made if math.isclose(row.loaded(load), before.loaded(load), rel_tol=KEEPS_STIFFNESS) else None
+        mixed = replace(before.mixed, solref=(-spring * full**2, -before.dashpot * full), solimp=(near, full, *shape))
+        load, row = self.pair.load, ModelRow(self.pair.model, self.pair.inverse_weight, mixed)
+        return mixed if math.isclose(row.loaded(load), before.loaded(load), rel_tol=KEEPS_STIFFNESS) else None
 
     @property
     def stiffness(self) -> tuple[float, float]:

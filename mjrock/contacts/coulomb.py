@@ -67,7 +67,7 @@ class CoulombFriction:
         self.kinetic = require_within("kinetic", kinetic, 0.0, 1.0)
         if spun := np.flatnonzero(model.pair_dim > 3).tolist():
             ends = zip(model.pair_geom1[spun], model.pair_geom2[spun], strict=True)
-            names = [" on ".join(geom_label(model, int(geom)) for geom in both) for both in ends]
+            names = [" on ".join(geom_label(model, int(geom)) for geom in geoms) for geoms in ends]
             warn_of(
                 f"pairs {named(names)} have condim 4 or 6, torsional or rolling friction, and keep their rows, which "
                 "press apart what slides; condim 3 has Coulomb's friction",
@@ -146,8 +146,8 @@ class CoulombFriction:
         their normal rows."""
         pressing, forces = [], data.efc_force
         addresses, geoms = data.contact.efc_address.tolist(), data.contact.geom.tolist()
-        for i, (address, both) in enumerate(zip(addresses, geoms, strict=True)):
-            pair = self._pairs.get(frozenset(both), -1)
+        for i, (address, pair_geoms) in enumerate(zip(addresses, geoms, strict=True)):
+            pair = self._pairs.get(frozenset(pair_geoms), -1)
             if pair >= 0 and self.dimensions[pair] == 3 and address >= 0 and forces[address] > least:
                 pressing.append((i, pair, address))
         number, pairs, rows = np.reshape(np.array(pressing, dtype=np.int64), (-1, 3)).T

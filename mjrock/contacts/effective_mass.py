@@ -67,9 +67,9 @@ class ModelSprings:
         drawn = length - np.clip(length, low, high)  # a range of lengths in which it is slack
         k = np.concatenate([_tangent(tendons, drawn), servo_k])
         geared = np.maximum(np.abs(model.actuator_gear[:, :1]), mujoco.mjMINVAL) ** np.arange(spared.shape[1])
-        own = _coefficients(model, "actuator_damping", count) / geared  # of the speed before the gear
-        own[:, 0] += servo_c
-        c = np.vstack([spared, own])
+        damping = _coefficients(model, "actuator_damping", count) / geared  # of the speed before the gear
+        damping[:, 0] += servo_c
+        c = np.vstack([spared, damping])
         rubs = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
         dry = np.concatenate([rubs * np.reshape(model.tendon_frictionloss, -1), np.zeros(count)])
         acts = (k != 0) | (c != 0).any(axis=1) | (dry > 0)
@@ -114,11 +114,11 @@ def moved_or_sprung(model: mujoco.MjModel, data: mujoco.MjData) -> Flags:
 def _coefficients(model: mujoco.MjModel, name: str, count: int) -> Array:
     """The linear coefficient of springs or dampers and those of higher order, shape (count, 3); zeros where a flag
     of the model disables them."""
-    values = np.hstack([field(model, name, count).reshape(count, 1), *_higher(model, name, count)])
+    values = np.hstack([field(model, name, count).reshape(count, 1), *_higher_coefficients(model, name, count)])
     return np.array(values * (not model.opt.disableflags & (NO_DAMPERS if "damping" in name else NO_SPRINGS)))
 
 
-def _higher(model: mujoco.MjModel, name: str, count: int) -> Iterator[Array]:
+def _higher_coefficients(model: mujoco.MjModel, name: str, count: int) -> Iterator[Array]:
     """The coefficients of higher order, shape (count, 2), where MuJoCo has them."""
     if hasattr(mujoco, "mjNPOLY"):
         yield np.reshape(getattr(model, f"{name}poly"), (count, mujoco.mjNPOLY))
@@ -270,13 +270,13 @@ def effective_mass(
         mass=mass,
         slides=slides,
         motion=motion,
-        gravity=_together(-constraints.weight * answer[:, 0]),
+        gravity=_approach_of_gravity(-constraints.weight * answer[:, 0]),
         yielding=tuple(sorted({int(number) for number in constraints.number[yields]})) if matters else (),
         limits=tuple(int(row) for row in constraints.row[pressed]) if stops else (),
     )
 
 
-def _together(parts: Array) -> float:
+def _approach_of_gravity(parts: Array) -> float:
     """Acceleration with which gravity brings the geoms together [m/s2], from the parts of the joints; exactly zero
     where all that is left of it is rounding, as for bodies that fall alike."""
     gravity = float(parts.sum())
@@ -329,11 +329,11 @@ class PoseConstraints:
         """Change of the joints' velocity with the constraints that count, shape (nv, n); `free` without them."""
         if not counted.any():
             return free
-        held, own = self.rows[counted], self.moved[:, counted]
-        inner = held @ own + np.diag(softness[counted])
+        held, moved = self.rows[counted], self.moved[:, counted]
+        inner = held @ moved + np.diag(softness[counted])
         scale = np.abs(inner).max(initial=1e-300)
         solved = np.linalg.lstsq(inner / scale, held @ free / scale, rcond=1e-10)[0]
-        return np.array(free - own @ solved)
+        return np.array(free - moved @ solved)
 
 
 def _free(answer: Array, rows: Array) -> float:
@@ -343,10 +343,10 @@ def _free(answer: Array, rows: Array) -> float:
 
 def _stuck(answer: Array, rows: Array) -> float:
     """W_nn - W_nt W_tt^-1 W_tn [1/kg]."""
-    return float(rows[0] @ answer @ _sticking(rows @ answer))
+    return float(rows[0] @ answer @ _sticking_impulse(rows @ answer))
 
 
-def _sticking(weight: Array) -> Array:
+def _sticking_impulse(weight: Array) -> Array:
     """The impulse, with a normal part of 1, after which the point has not slipped."""
     tangents = np.linalg.lstsq(weight[1:, 1:], -weight[1:, 0], rcond=1e-8)[0]
     return np.array((1.0, *tangents))
@@ -356,14 +356,14 @@ def _mass(answer: Array, rows: Array, friction: float) -> tuple[float, Array]:
     """The mass of a point that sticks as long as friction holds it [kg], and the impulse that stops it."""
     weight, impulse = rows @ answer, np.array((1.0, 0.0, 0.0))
     if friction > 0:
-        impulse = _sticking(weight)
+        impulse = _sticking_impulse(weight)
         if np.linalg.norm(impulse[1:]) > friction:
-            impulse = _slipping(weight, friction)
+            impulse = _slipping_impulse(weight, friction)
     freedom = float(weight[0] @ impulse)
     return (1 / freedom if freedom > 1e-12 * weight[0, 0] else math.inf), impulse
 
 
-def _slipping(weight: Array, friction: float) -> Array:
+def _slipping_impulse(weight: Array, friction: float) -> Array:
     """The impulse, with a normal part of 1, whose friction is opposite to the slip that it leaves."""
     (first, second), ((a, b), (c, d)) = weight[1:, 0].tolist(), weight[1:, 1:].tolist()
     x, y = _unit(first, second)

@@ -50,7 +50,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
             with TemporaryDirectory() as folder:
                 partial = Path(folder) / path.name
                 yield partial
-                with open(partial, "rb") as content, _opened(path) as sink:
+                with open(partial, "rb") as content, _opened_device(path) as sink:
                     shutil.copyfileobj(content, sink)
     except OSError as error:
         if error.filename is not None and str(error.filename) != str(partial):
@@ -83,7 +83,7 @@ def _keep_owner_and_mode(path: Path, old: os.stat_result) -> None:
         path.chmod(stat.S_IMODE(old.st_mode))
 
 
-def _opened(path: Path) -> IO[bytes]:
+def _opened_device(path: Path) -> IO[bytes]:
     """A device or a pipe, open for writing. A pipe that nobody reads is an OSError and is not waited for."""
     try:
         descriptor = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
@@ -159,7 +159,7 @@ def aligned(rows: Sequence[Sequence[str]], sides: str = ">") -> list[str]:
     that of all further columns. No line ends in blanks."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     formats = [f"{side}{width}" for side, width in zip(sides.ljust(len(widths), sides[-1]), widths, strict=True)]
-    return ["  ".join(f"{cell:{each}}" for cell, each in zip(row, formats, strict=True)).rstrip() for row in rows]
+    return ["  ".join(f"{cell:{form}}" for cell, form in zip(row, formats, strict=True)).rstrip() for row in rows]
 
 
 def _cell(value: object) -> object:

@@ -286,14 +286,14 @@ class GeomPair:
         """Whether a line meets edges or corners of all boxes, cylinders and meshes among the two geoms."""
         model, cosines = self.model, []
         for geom in self.geoms:
-            kind, along = model.geom_type[geom], np.abs(data.geom_xmat[geom].reshape(3, 3).T @ away)
-            if kind == mujoco.mjtGeom.mjGEOM_PLANE or kind in NOT_CONVEX:
+            geom_type, along = model.geom_type[geom], np.abs(data.geom_xmat[geom].reshape(3, 3).T @ away)
+            if geom_type == mujoco.mjtGeom.mjGEOM_PLANE or geom_type in NOT_CONVEX:
                 return False
-            if kind == mujoco.mjtGeom.mjGEOM_BOX:
+            if geom_type == mujoco.mjtGeom.mjGEOM_BOX:
                 cosines.append(along.max())
-            elif kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+            elif geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER:
                 cosines.append(max(along[2], float(np.hypot(*along[:2]))))
-            elif kind == mujoco.mjtGeom.mjGEOM_MESH:
+            elif geom_type == mujoco.mjtGeom.mjGEOM_MESH:
                 mesh = int(model.geom_dataid[geom])
                 first = int(model.mesh_polyadr[mesh])
                 normals = model.mesh_polynormal[first : first + int(model.mesh_polynum[mesh])]

@@ -176,39 +176,39 @@ def inspected(pair: GeomPair, pose: Pose, contacts: int | None = None, load: flo
 
 
 def _notes(
-    pair: GeomPair, pose: Pose, row: ModelRow, met: PairMeeting, found: InspectedContact, contacts: int | None
+    pair: GeomPair, pose: Pose, row: ModelRow, met: PairMeeting, contact: InspectedContact, contacts: int | None
 ) -> Iterator[str]:
     yield from duplicates(pair)
     yield from row.notes()
     yield from shape_caveats(pair, pose)
-    if frozenset(pair.geoms) in pose.resting and found.load <= NO_LOAD < pair.load:
+    if frozenset(pair.geoms) in pose.resting and contact.load <= NO_LOAD < pair.load:
         yield "it touches in this pose and carries nothing at rest"
-    yield from turn_caveats(pair, pose, found.k)
-    yield from _step_notes(found, float(pair.model.opt.timestep))
+    yield from turn_caveats(pair, pose, contact.k)
+    yield from _step_notes(contact, float(pair.model.opt.timestep))
     yield from model_caveats(pair.model)
     if met.neighbours.level:
         others = len(met.neighbours.level)
         yield f"it lands together with {others} other contact{'s' * (others > 1)} of its bodies, and shares the mass"
     if pair.is_uneven:
-        yield uneven_ground(found.points)
+        yield uneven_ground(contact.points)
     elif contacts == 1 and pair.makes_several_points:
         yield (
             "it can have several points: xi and e are those of a single one that bears the whole mass; contacts=None "
             "counts them"
         )
-    if not found.mass < math.inf:
+    if not contact.mass < math.inf:
         yield "mass is infinite: the geoms cannot approach each other along their normal, and there is no xi and no e"
         return
     total = pair.moving
-    if max(found.mass, 1 / pair.inverse_weight) > IMMOVABLE * total:
+    if max(contact.mass, 1 / pair.inverse_weight) > IMMOVABLE * total:
         yield (
             f"k, c and mass belong to a body that can hardly move this way: 1/W is {1 / pair.inverse_weight:.2g} kg "
-            f"and the mass {found.mass:.2g} kg, and all that moves weighs {total:.3g} kg"
+            f"and the mass {contact.mass:.2g} kg, and all that moves weighs {total:.3g} kg"
         )
         return
     yield from unknown_landing(pair, pose)
-    if found.k > 0:
-        yield from restraint_caveats(pose, met.effective, found.k * met.points, found.xi)
+    if contact.k > 0:
+        yield from restraint_caveats(pose, met.effective, contact.k * met.points, contact.xi)
     if pair.explicit >= 0 or not all(pair.model.body_weldid[list(pair.bodies)]):
         yield from other_keyframes(pair, pose, met, contacts, row.mixed.sliding)
 
@@ -286,5 +286,5 @@ def _flex_contacts(model: mujoco.MjModel) -> Iterator[FlexContact]:
                 ends = (weights.max(), weights[weights > 0].min())
                 rows = [ModelRow(model, float(weight), mixed) for weight in ends]
                 name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, flex) or f"[{flex}]"
-                k, c = (np.array([getattr(row, each) for row in rows]) for each in ("k", "c"))
+                k, c = (np.array([getattr(row, name_of_number) for row in rows]) for name_of_number in ("k", "c"))
                 yield FlexContact(name, geom_label(model, geom), int(model.flex_vertnum[flex]), k, c)

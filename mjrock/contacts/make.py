@@ -130,7 +130,7 @@ def contact_for(
     arguments = locals()
     whole = compiled_model(model)
     pair = GeomPair.named(whole, geom1, geom2)
-    request = ContactRequest(**{each.name: arguments[each.name] for each in fields(ContactRequest)})
+    request = ContactRequest(**{entry.name: arguments[entry.name] for entry in fields(ContactRequest)})
     pose = Pose(whole, keyframe, qpos)
     contacts_made = _contacts(pose, [(pair, request)])
     for _, sentence in _sentences(whole, contacts_made):
@@ -212,12 +212,12 @@ def contacts_for(
     for key, values in pairs.items():
         request = _request(key, values, timestep)
         for geoms in _geoms_named(whole, key):
-            both = frozenset(geoms)
-            if both in without_wildcards:
+            geom_set = frozenset(geoms)
+            if geom_set in without_wildcards:
                 raise ValueError(f"pairs name the geoms {GeomPair(whole, geoms).labels} twice, last by {shown(key)}")
-            requests[both] = geoms, request
+            requests[geom_set] = geoms, request
             if not any(map(_is_wild, key)):
-                without_wildcards.add(both)
+                without_wildcards.add(geom_set)
     if not requests:
         raise ValueError(f"pairs = {shown(pairs)} name no contact; at least one is needed")
     contacts = _contacts(pose, [(GeomPair.named(whole, *geoms), request) for geoms, request in requests.values()])
@@ -228,22 +228,22 @@ def contacts_for(
 
 def _contacts(pose: Pose, requests: Sequence[tuple[GeomPair, ContactRequest]]) -> PairContacts:
     """The requested contacts in a pose, with the iterations that they need and remarks on what lands with each."""
-    made = [contact_of(pair, pose, request) for pair, request in requests]
-    by_geoms = {frozenset(contact.ids): contact for contact, _ in made}
+    results = [contact_of(pair, pose, request) for pair, request in requests]
+    by_geoms = {frozenset(contact.ids): contact for contact, _ in results}
     landed = {
         frozenset(pair.geoms): (contact, pose.along(request.normal).landing(pair))
-        for (pair, request), (contact, _) in zip(requests, made, strict=True)
+        for (pair, request), (contact, _) in zip(requests, results, strict=True)
     }
     needs = solver_need(pose, tuple(landed.values()))
-    whole = (replace(with_neighbours(contact, neighbours, by_geoms), needs=needs) for contact, neighbours in made)
-    return PairContacts(tuple(whole))
+    remarked = (replace(with_neighbours(contact, neighbours, by_geoms), needs=needs) for contact, neighbours in results)
+    return PairContacts(tuple(remarked))
 
 
 def _sentences(model: mujoco.MjModel, contacts: PairContacts) -> Iterator[tuple[PairContact, str]]:
     """Reasons for which contacts differ from the request, each with its contact."""
     for contact in contacts:
-        own = remaining_caveats(GeomPair(model, contact.ids), contact)
-        for sentence in (*own, *few_iterations(model.opt, contact.needs, contacts.impratio), *contact.remarks):
+        caveats = remaining_caveats(GeomPair(model, contact.ids), contact)
+        for sentence in (*caveats, *few_iterations(model.opt, contact.needs, contacts.impratio), *contact.remarks):
             yield contact, sentence
 
 
@@ -266,16 +266,16 @@ def _geoms_named(model: mujoco.MjModel, key: tuple[object, object]) -> Iterator[
     if not any(map(_is_wild, key)):
         yield firsts[0], seconds[0]
         return
-    found: dict[frozenset[int], tuple[int, int]] = {}
+    colliding: dict[frozenset[int], tuple[int, int]] = {}
     for geoms in itertools.product(firsts, seconds):
-        if frozenset(geoms) not in found and makes(GeomPair(model, geoms)):
-            found[frozenset(geoms)] = geoms
-    if not found:
+        if frozenset(geoms) not in colliding and makes(GeomPair(model, geoms)):
+            colliding[frozenset(geoms)] = geoms
+    if not colliding:
         raise ValueError(
             f"pairs of {shown(key)} are geoms that MuJoCo keeps apart, by contype and conaffinity, <exclude>, or as "
             "one body or parent and child; names without wildcards override that"
         )
-    yield from found.values()
+    yield from colliding.values()
 
 
 def _is_wild(name: object) -> bool:
@@ -346,16 +346,16 @@ class ContactRequest:
         """The request with k, the stiffness of each contact point, in place of k_face, k_n or depth."""
         if self.k_face is None and self.k_n is None and self.depth is None:
             return self
-        alone, here = self.mass is not None, pose.landing(pair)
+        alone, landing = self.mass is not None, pose.landing(pair)
         points = meeting_of_geoms(pair, pose, contacts=self.contacts, at=self.at, alone=alone).points
         if self.k_face is not None:
             k = self.k_face / points
         elif self.k_n is not None:
-            k = self.k_n * here.area / len(here.first)
-            if not here.area > 0:
+            k = self.k_n * landing.area / len(landing.first)
+            if not landing.area > 0:
                 raise ValueError(
-                    f"k_n = {self.k_n:g} N/m3 needs a face, and {pair.labels} meet in {len(here.first)} point"
-                    f"{'s' * (len(here.first) > 1)} at {pose.label}; give k or k_face"
+                    f"k_n = {self.k_n:g} N/m3 needs a face, and {pair.labels} meet in {len(landing.first)} point"
+                    f"{'s' * (len(landing.first) > 1)} at {pose.label}; give k or k_face"
                 )
         else:
             load = pose.load(pair, points, self.contacts) if self.load is None else self.load / points
@@ -394,7 +394,7 @@ def contact_of(pair: GeomPair, pose: Pose, request: ContactRequest) -> tuple[Pai
         )
     share = met.share if request.mass is None else request.mass / met.points
     gravity = met.effective.gravity
-    k = _stiffest(pair, request, h, share, gravity) if request.k is None else request.k
+    k = _stiffest_resolved(pair, request, h, share, gravity) if request.k is None else request.k
     c = request.c
     if c is None:
         c = 2 * _damping_ratio(request, math.sqrt(k / share), gravity) * math.sqrt(k * share)
@@ -476,14 +476,14 @@ def _damping_ratio(request: ContactRequest, omega: float, gravity: float) -> flo
     return falling_damping(e, pull)
 
 
-def _stiffest(pair: GeomPair, request: ContactRequest, h: float, mass: float, gravity: float) -> float:
+def _stiffest_resolved(pair: GeomPair, request: ContactRequest, h: float, mass: float, gravity: float) -> float:
     """The stiffest contact that the step resolves, rounded down [N/m]."""
     omega = LONG_STEP / h
     for _ in range(20):  # with gravity the damping depends on the frequency, a little
         k = stiffest(h, _damping_ratio(request, omega, gravity), mass)
         omega = math.sqrt(k / mass)
-    most = 0.4 * inertia_of(WITHIN[1], pair.inverse_weight) / h**2
-    return float(rounded_down(min(0.999 * k, most), 3))
+    representable = 0.4 * inertia_of(WITHIN[1], pair.inverse_weight) / h**2
+    return float(rounded_down(min(0.999 * k, representable), 3))
 
 
 def _remarks(

@@ -77,7 +77,7 @@ class Measurement:
             ("force at rest [N]", self.force),
             (f"creep under {self.friction:.3g} N [m/s]", self.creep),
         ]
-        cells = [[name, *("-" if math.isnan(each) else f"{each:.4g}" for each in both)] for name, both in rows]
+        cells = [[name, *("-" if math.isnan(value) else f"{value:.4g}" for value in values)] for name, values in rows]
         title = f"{self.contact.geom1} on {self.contact.geom2}"
         return "\n".join(aligned([[title, "found", "promised"], *cells], "<>"))
 
@@ -164,7 +164,7 @@ class ContactTest:
         blows = [self.blow(speed, (phase + 0.5) / PHASES * speed * h) for phase in range(PHASES)]
         load = contact.load * contact.points
         depth = contact.load / contact.k_loaded if contact.k_loaded > 0 else math.nan
-        rest, pressed, pushed = self.rest(0.0 if math.isnan(depth) else depth, duration)
+        at_rest, pressed, pushed = self.rest(0.0 if math.isnan(depth) else depth, duration)
         found_depth = -float(pressed.distances.mean()) if len(pressed.distances) else math.nan
         creep = MeasuredValue(math.nan, math.nan)
         if pushed.friction > 0:
@@ -179,7 +179,7 @@ class ContactTest:
             friction=pushed.friction,
             creep=creep,
             blow=blows[0][1],
-            rest=rest,
+            rest=at_rest,
         )
 
     def at(self, distance: float) -> tuple[Pose, mujoco.MjData]:
@@ -216,10 +216,10 @@ class ContactTest:
 
     def approach(self, pose: Pose) -> Array:
         """The change of the distance of the geoms with the joints in a pose, shape (nv,)."""
-        here, rate, side = pose.landing(self.pair), np.zeros(self.model.nv), np.zeros((3, self.model.nv))
-        for body, points, sign in zip(self.pair.bodies, (here.first, here.second), (1.0, -1.0), strict=True):
+        landing, rate, side = pose.landing(self.pair), np.zeros(self.model.nv), np.zeros((3, self.model.nv))
+        for body, points, sign in zip(self.pair.bodies, (landing.first, landing.second), (1.0, -1.0), strict=True):
             mujoco.mj_jac(self.model, pose.data, side, None, points.mean(axis=0), body)
-            rate += sign * (here.away @ side)
+            rate += sign * (landing.away @ side)
         return rate
 
     def blow(self, speed: float, distance: float) -> tuple[float, Array]:
@@ -257,7 +257,7 @@ class ContactTest:
                 path.append((float(state.time), float(points.distances.mean()) if len(points.distances) else math.nan))
                 if state.time > end - 0.25 * duration and len(points.distances):
                     seen.append(points)
-            ends.append(_mean(seen))
+            ends.append(_mean_points(seen))
         return np.array(path), ends[0], ends[1]
 
     @property
@@ -292,7 +292,7 @@ class ContactTest:
         )
 
 
-def _mean(seen: Sequence[PressedPoints]) -> PressedPoints:
+def _mean_points(seen: Sequence[PressedPoints]) -> PressedPoints:
     """The mean of points of several steps; those with another number of points than the last are left out."""
     if not seen:
         return PressedPoints(np.zeros(0), np.zeros(0), 0.0, 0.0)

@@ -96,12 +96,12 @@ class LandingTrial:
         level, start = float(apart @ away), np.array(place[moved])
         for aside in (np.zeros(3), level * away - apart):
             place[moved] = start + (aside if moved == geoms[0] else -aside)
-            far, near = level - 1.01 * float(radii[list(geoms)].sum()), level
+            beyond, near = level - 1.01 * float(radii[list(geoms)].sum()), level
             if not len(self.points(pair, away, near)):
                 continue
             for _ in range(LANDING_HALVINGS):
-                middle = 0.5 * (far + near)
-                far, near = (far, middle) if len(self.points(pair, away, middle)) else (middle, near)
+                middle = 0.5 * (beyond + near)
+                beyond, near = (beyond, middle) if len(self.points(pair, away, middle)) else (middle, near)
             distance = near + self.pressed(pair)
             points = self.points(pair, away, distance)
             place[moved] = start
@@ -187,8 +187,8 @@ def state_of(model: mujoco.MjModel, keyframe: object = None, qpos: object = None
         raise ValueError(f"keyframe = {shown(keyframe)} and qpos are both given; give one of them")
     data = mujoco.MjData(model)
     if is_iterable(keyframe):
-        for each in keyframe:
-            number = keyframe_id(model, each)
+        for name in keyframe:
+            number = keyframe_id(model, name)
             pose, controls = model.key_qpos[number], model.key_ctrl[number]
             data.qpos[:] = np.where(pose == model.qpos0, data.qpos, pose)
             data.ctrl[:] = np.where(controls == 0, data.ctrl, controls)
@@ -240,12 +240,12 @@ def forces_at_rest(model: mujoco.MjModel, data: mujoco.MjData) -> dict[frozenset
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         mujoco.mj_forward(rigid, state)
-    found: dict[frozenset[int], list[float]] = {}
+    forces: dict[frozenset[int], list[float]] = {}
     force = np.zeros(6)
     for i, geoms in enumerate(state.contact.geom.tolist()):
         mujoco.mj_contactForce(rigid, state, i, force)
-        found.setdefault(frozenset(geoms), []).append(float(force[0]))
-    return found
+        forces.setdefault(frozenset(geoms), []).append(float(force[0]))
+    return forces
 
 
 class Pose:
@@ -271,25 +271,25 @@ class Pose:
 
     def at_positions(self, qpos: Array) -> Pose:
         """The same pose with other positions of the joints: controls and activations stay."""
-        other = Pose(self.model, qpos=qpos)
-        other.data.ctrl[:], other.data.act[:] = self.data.ctrl, self.data.act
-        other.exact, other.label = self.exact, self.label
-        return other
+        pose = Pose(self.model, qpos=qpos)
+        pose.data.ctrl[:], pose.data.act[:] = self.data.ctrl, self.data.act
+        pose.exact, pose.label = self.exact, self.label
+        return pose
 
     def landing(self, pair: GeomPair) -> Landing:
         """Where two geoms meet in the pose."""
         key = (*pair.geoms, *([] if self.normal is None else self.normal.tolist()))
         if key not in self._landings:
-            self._landings[key] = self._land(pair)
+            self._landings[key] = self._landing_of(pair)
         return self._landings[key]
 
-    def _land(self, pair: GeomPair) -> Landing:
+    def _landing_of(self, pair: GeomPair) -> Landing:
         """Where two geoms meet: along the normal that is given, that of a plane, the axis of a height field, or the
         shortest line."""
         ground = self.ground if pair.makes_several_points or self.normal is not None else None
         along = pair.axis(self.data, mujoco.mjtGeom.mjGEOM_HFIELD) if self.normal is None else self.normal
-        if along is not None and ground is not None and (found := ground.drop(pair, along)):
-            return found
+        if along is not None and ground is not None and (landing := ground.drop(pair, along)):
+            return landing
         away, distance, ends = pair.separation(self.data)
         away = away if along is None else along
         if ground is not None:
@@ -306,9 +306,9 @@ class Pose:
         vector = require_array("normal", normal, (3,))
         if not (size := float(np.linalg.norm(vector))) > 0:
             raise ValueError(f"normal = {shown(normal)} has no direction; give a vector that is not zero")
-        other = copy.copy(self)
-        other.normal, other._groups = vector / size, {}
-        return other
+        pose = copy.copy(self)
+        pose.normal, pose._groups = vector / size, {}
+        return pose
 
     def group(self, pair: GeomPair) -> BodyPair:
         """The geoms of the two bodies of a pair."""
@@ -421,10 +421,10 @@ def meeting_of_geoms(
         point = require_array("at", at, (3,))
         if np.abs(point).max() > FARTHEST_GEOM:
             raise ValueError(f"at = {shown(at)} is outside the valid range of {FARTHEST_GEOM:g} m")
-    here = pose.landing(pair)
+    landing = pose.landing(pair)
     others = Neighbours() if alone or contacts is not None or at is not None else neighbours(pair, pose)
-    landings = [here, *(pose.landing(other) for other in others.level)]
-    first, second = (np.concatenate([getattr(each, side) for each in landings]) for side in ("first", "second"))
+    landings = [landing, *(pose.landing(other) for other in others.level)]
+    first, second = (np.concatenate([getattr(landed, side) for landed in landings]) for side in ("first", "second"))
     count = len(first) if contacts is None else contacts
     if at is not None:
         places = point, point
@@ -432,7 +432,7 @@ def meeting_of_geoms(
         places = pair.centre(pose.data, pair.bodies[0]), pair.centre(pose.data, pair.bodies[1])
     else:
         places = first.mean(axis=0), second.mean(axis=0)
-    effective = effective_mass(pair, pose.constraints, here.away, places, law.together(count))
+    effective = effective_mass(pair, pose.constraints, landing.away, places, law.together(count))
     return PairMeeting(count, effective, others)
 
 
@@ -449,33 +449,33 @@ class BodyPair:
         bodies = model.body_weldid[model.geom_bodyid]
         ours, theirs = (np.flatnonzero(bodies == bodies[geom]).tolist() for geom in pair.geoms)
         every = (GeomPair(model, geoms) for geoms in itertools.product(ours, theirs))
-        self.pairs = [each for each in every if makes(each)]
-        self.geoms = np.reshape([each.geoms for each in self.pairs], (-1, 2)).T
+        self.pairs = [geom_pair for geom_pair in every if makes(geom_pair)]
+        self.geoms = np.reshape([geom_pair.geoms for geom_pair in self.pairs], (-1, 2)).T
         self._landed = np.full((len(self.pairs), 7), np.nan)
 
     def landed(self, chosen: Integers) -> tuple[Array, Array, Array]:
         """Distances [m] of some pairs, shape (n,), directions in which they part, and middles of their points [m]."""
         for i in chosen[np.isnan(self._landed[chosen, 0])].tolist():
-            there = self.pose.landing(self.pairs[i])
-            self._landed[i] = there.distance, *there.away, *there.first.mean(axis=0)
+            landing = self.pose.landing(self.pairs[i])
+            self._landed[i] = landing.distance, *landing.away, *landing.first.mean(axis=0)
         return self._landed[chosen, 0], self._landed[chosen, 1:4], self._landed[chosen, 4:]
 
 
 def neighbours(pair: GeomPair, pose: Pose) -> Neighbours:
     """The other geoms of the two bodies that land about when a pair does. They part along the same line, and their
     distances differ by less than a share of what lies between them."""
-    group, here, place = pose.group(pair), pose.landing(pair), pose.data.geom_xpos
+    group, landing, place = pose.group(pair), pose.landing(pair), pose.data.geom_xpos
     radius = np.where(pair.model.geom_rbound > 0, pair.model.geom_rbound, np.inf)  # planes have none
-    ends, reach, own = place[group.geoms], radius[group.geoms], np.array(pair.geoms)[:, None]
-    between = reach + np.linalg.norm(ends - place[own], axis=2) + radius[own]
-    least = np.linalg.norm(ends[0] - ends[1], axis=1) - (reach + SLOPING * between).sum(axis=0)
-    met = (group.geoms != own).any(axis=0)
+    ends, reach, pair_geoms = place[group.geoms], radius[group.geoms], np.array(pair.geoms)[:, None]
+    between = reach + np.linalg.norm(ends - place[pair_geoms], axis=2) + radius[pair_geoms]
+    least_distance = np.linalg.norm(ends[0] - ends[1], axis=1) - (reach + SLOPING * between).sum(axis=0)
+    met = (group.geoms != pair_geoms).any(axis=0)
     if pose.normal is not None:  # of several geoms that may lie below, one does
         met &= group.geoms[1] == pair.geoms[1]
-    near = np.flatnonzero((least <= max(here.distance, 0.0)) & met)
+    near = np.flatnonzero((least_distance <= max(landing.distance, 0.0)) & met)
     distance, away, middle = group.landed(near)
-    between, differs = np.linalg.norm(middle - here.first.mean(axis=0), axis=1), np.abs(distance - here.distance)
-    along = (away @ here.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)
+    between, differs = np.linalg.norm(middle - landing.first.mean(axis=0), axis=1), np.abs(distance - landing.distance)
+    along = (away @ landing.away >= 1 - SLOPING**2) & (differs <= SLOPING * between)
     level = along & (differs <= NEARLY_LEVEL * between)
     late = level & (differs > DEPTH * (between + pair.thickness))
     return Neighbours(

@@ -95,16 +95,16 @@ def model_caveats(model: mujoco.MjModel) -> Iterator[str]:
             "the integrator `discrete` takes energy from every contact, as much as a damping ratio of omega h / 2; "
             "take Euler, implicitfast or RK4" + ("" if option.disableflags & disable_bits("REFSAFE") else SAFE)
         )
-    for bits, kind in ((int(option.enableflags), ENABLE), (int(option.disableflags), DISABLE)):
+    for bits, flags in ((int(option.enableflags), ENABLE), (int(option.disableflags), DISABLE)):
         known = {
             int(flag): FLAG_EFFECTS.get(name.removeprefix("mj"))
-            for name, flag in kind.__members__.items()
+            for name, flag in flags.__members__.items()
             if "_" in name
         }
         for bit in (1 << i for i in range(bits.bit_length()) if bits >> i & 1):
             text = known.get(bit)
             if text is None:
-                yield f"{kind.__name__} {bit} is set, and its effect on contacts is not known here"
+                yield f"{flags.__name__} {bit} is set, and its effect on contacts is not known here"
             elif text:
                 yield text
 
@@ -140,7 +140,7 @@ def few_iterations(option: mujoco.MjOption, needs: SolverNeed, impratio: float =
         )
     solver = mujoco.mjtSolver(option.solver).name.removeprefix("mjSOL_")
     few = option.iterations < needs.iterations or option.ls_iterations < needs.ls_iterations
-    most = max(int(option.iterations), MOST_ITERATIONS)
+    cap = max(int(option.iterations), MOST_ITERATIONS)
     if needs.converges and few:
         yield (
             f"the solver needs iterations = {needs.iterations} and ls_iterations = {needs.ls_iterations} for it, and "
@@ -148,12 +148,12 @@ def few_iterations(option: mujoco.MjOption, needs: SolverNeed, impratio: float =
         )
     elif not needs.converges and needs.impratio == math.inf:
         yield (
-            f"the solver {solver} does not converge with this contact in {most} iterations, and with no smaller "
+            f"the solver {solver} does not converge with this contact in {cap} iterations, and with no smaller "
             "impratio; take Newton, or a smaller ratio of masses"
         )
     elif not needs.converges and (few or max(option.impratio, impratio) > needs.impratio):
         yield (
-            f"the solver {solver} does not converge with this contact in {most} iterations; with impratio = "
+            f"the solver {solver} does not converge with this contact in {cap} iterations; with impratio = "
             f"{needs.impratio:g} it does in {needs.iterations}, and friction creeps more: apply(model, "
             "iterations=True) writes both and caveats then says how much; or take Newton"
         )
@@ -203,15 +203,15 @@ def rounded_down(value: float, digits: int = 2) -> str:
 
 def unknown_landing(pair: GeomPair, pose: Pose) -> Iterator[str]:
     """A sentence where the pose does not show how two geoms land."""
-    here = pose.landing(pair)
+    landing = pose.landing(pair)
     if pose.normal is None and int(mujoco.mjtGeom.mjGEOM_SDF) in pose.model.geom_type[list(pair.geoms)]:
         yield (
             "MuJoCo has no shortest line to a geom of signed distances, and that of the centres is taken; give "
             "normal, the direction in which the first geom parts from the second"
         )
-    elif pose.normal is None and here.distance > TOUCHING_AT_REST and pair.meets_edges(pose.data, here.away):
+    elif pose.normal is None and landing.distance > TOUCHING_AT_REST and pair.meets_edges(pose.data, landing.away):
         yield (
-            f"the geoms are {here.distance:.2g} m apart in this pose, and their shortest line meets a face of "
+            f"the geoms are {landing.distance:.2g} m apart in this pose, and their shortest line meets a face of "
             "neither: how they land is not known, nor the mass; give normal, the direction in which the first "
             "parts from the second, or the pose in which they land"
         )
@@ -220,10 +220,10 @@ def unknown_landing(pair: GeomPair, pose: Pose) -> Iterator[str]:
 def turn_caveats(pair: GeomPair, pose: Pose, k: float) -> Iterator[str]:
     """A sentence where a small turn gives the faces of two geoms another number of points, with both stiffnesses of
     the joint. Each point has the stiffness k [N/m]."""
-    here = pose.landing(pair)
-    if not pair.has_two_faces or not pair.can_turn(pose.data, here.away):
+    landing = pose.landing(pair)
+    if not pair.has_two_faces or not pair.can_turn(pose.data, landing.away):
         return
-    before, after = len(here.first), len(pose.ground.points(pair, here.away, here.distance, SMALL_TURN))
+    before, after = len(landing.first), len(pose.ground.points(pair, landing.away, landing.distance, SMALL_TURN))
     if after > before:
         yield (
             f"a turn of {SMALL_TURN:g} degrees about the normal gives the two faces {after} points for {before}: the "
@@ -234,12 +234,12 @@ def turn_caveats(pair: GeomPair, pose: Pose, k: float) -> Iterator[str]:
 
 def shape_caveats(pair: GeomPair, pose: Pose) -> Iterator[str]:
     """What MuJoCo's contact detection does to the shapes of two geoms, one sentence each."""
-    model, here = pair.model, pose.landing(pair)
+    model, landing = pair.model, pose.landing(pair)
     kinds = [mujoco.mjtGeom(model.geom_type[geom]) for geom in pair.geoms]
     if {*kinds} == {mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER}:
         cylinder = pair.geoms[kinds.index(mujoco.mjtGeom.mjGEOM_CYLINDER)]
-        upright = abs(float(pose.data.geom_xmat[cylinder].reshape(3, 3)[:, 2] @ here.away)) > FACING
-        if upright and pair.can_turn(pose.data, here.away):
+        upright = abs(float(pose.data.geom_xmat[cylinder].reshape(3, 3)[:, 2] @ landing.away)) > FACING
+        if upright and pair.can_turn(pose.data, landing.away):
             yield (
                 "MuJoCo throws a cylinder that stands on a plane and turns about its axis: by rounding it finds "
                 "contact points up to the radius deep; take a box in place of the plane"
@@ -249,11 +249,11 @@ def shape_caveats(pair: GeomPair, pose: Pose) -> Iterator[str]:
             "MuJoCo before 3.4 finds two boxes half as deep as they are, so that their contact is half as stiff; "
             "take a newer MuJoCo"
         )
-    if len(here.first) == 1 and pair.makes_several_points and not has_several_points(model.opt):
+    if len(landing.first) == 1 and pair.makes_several_points and not has_several_points(model.opt):
         option = pose.ground.model.opt
         flags = option.disableflags, option.enableflags
         give_several_points(option)
-        several = len(pose.ground.points(pair, here.away, here.distance))
+        several = len(pose.ground.points(pair, landing.away, landing.distance))
         option.disableflags, option.enableflags = flags
         if several > 1:
             yield (
@@ -310,13 +310,13 @@ def _spring_caveats(pose: Pose, effective: EffectiveMass, k: float, xi: float, s
     rubbed = (
         min(e, max(pull * (2 * math.sqrt(e) - 2 * xi * e), e - rebound_at(1.0, xi, 1.0, pull))) if pull > 0 else 0.0
     )
-    least = NOTABLE_LOSS if damped + rubbed <= NOTABLE_LOSS else 0.25 * NOTABLE_LOSS
-    if damped > least:
+    notable = NOTABLE_LOSS if damped + rubbed <= NOTABLE_LOSS else 0.25 * NOTABLE_LOSS
+    if damped > notable:
         yield (
             f"{_names(pose, damping)} a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
             "along the approach, which lowers its restitution"
         )
-    if rubbed > least:
+    if rubbed > notable:
         yield (
             f"{_names(pose, friction)} a dry friction of {friction.sum():.3g} N along the approach, which "
             f"lowers e = {e:.3g} by up to {rubbed:.2g} at {speed:g} m/s, and by more at a lower speed"
@@ -351,20 +351,20 @@ def yielding_joints(
     """
     if met.effective.yielding:  # `restraint_caveats` names them
         return
-    model, here = pair.model, pose.landing(pair)
+    model, landing = pair.model, pose.landing(pair)
     assert law.k is not None
     lasts = math.pi / math.sqrt(law.k / met.share)
     moved = np.array(pose.data.qpos)
     mujoco.mj_integratePos(model, moved, met.effective.motion, 0.5 * (1 + rebound_restitution(xi)) * speed * lasts)
     later = Pose(model, qpos=moved)
     before, after = [], []
-    for body, point in zip(pair.bodies, (here.first.mean(axis=0), here.second.mean(axis=0)), strict=True):
+    for body, point in zip(pair.bodies, (landing.first.mean(axis=0), landing.second.mean(axis=0)), strict=True):
         turned = later.data.xmat[body].reshape(3, 3) @ pose.data.xmat[body].reshape(3, 3).T
         before.append(point)
         after.append(later.data.xpos[body] + turned @ (point - pose.data.xpos[body]))
     first, last = (
-        effective_mass(pair, each.constraints, here.away, (points[0], points[1]), law.together(met.points)).mass
-        for each, points in ((pose, before), (later, after))
+        effective_mass(pair, at_pose.constraints, landing.away, (points[0], points[1]), law.together(met.points)).mass
+        for at_pose, points in ((pose, before), (later, after))
     )
     if max(last / first, first / last) > NOTABLE_MASS_RATIO:
         yield (
@@ -374,7 +374,7 @@ def yielding_joints(
 
 
 def other_keyframes(
-    pair: GeomPair, pose: Pose, here: PairMeeting, contacts: int | None, friction: float
+    pair: GeomPair, pose: Pose, met: PairMeeting, contacts: int | None, friction: float
 ) -> Iterator[str]:
     """A sentence on the keyframe in which the mass of a contact point differs most, if it differs much."""
     if pose.given and (pose.exact or not pose.keeps_qpos0(pair)):
@@ -385,10 +385,10 @@ def other_keyframes(
             continue
         share = meeting_of_geoms(pair, other, contacts=contacts, law=PointLaw(friction)).share
         if 0 < share < IMMOVABLE * pair.moving:  # beyond that the motion is one that cannot be
-            worst = max(worst, (max(share / here.share, here.share / share), name, share))
+            worst = max(worst, (max(share / met.share, met.share / share), name, share))
     _, name, share = worst
     if name:
         yield (
-            f"a contact point stops {share:.3g} kg at keyframe '{name}' and {here.share:.3g} kg at {pose.label}, "
+            f"a contact point stops {share:.3g} kg at keyframe '{name}' and {met.share:.3g} kg at {pose.label}, "
             f"for which the contact is made; give keyframe='{name}' if that is where the model stands"
         )

@@ -91,8 +91,8 @@ _CRITICAL = math.pi / 2 - 1e-7
 
 def _underdamped(angle: float) -> tuple[float, float]:
     """-log(e) of xi = sin(angle), which keeps every digit of a small xi, and its slope."""
-    rest, tan = math.pi / 2 - angle, math.tan(angle)
-    return 2 * rest * tan, 2 * rest * (1 + tan * tan) - 2 * tan
+    complement, tan = math.pi / 2 - angle, math.tan(angle)
+    return 2 * complement * tan, 2 * complement * (1 + tan * tan) - 2 * tan
 
 
 def _overdamped(angle: float) -> tuple[float, float]:

@@ -202,9 +202,9 @@ def contact_parameters(
     Raises:
         ValueError: for a value outside its range, or one that needs an impedance which MuJoCo would silently clamp.
     """
-    given = {"stiffness k": k, "damping c": c, "timestep": timestep, "inverse_weight": inverse_weight}
-    if any(isinstance(value, list | tuple) or np.ndim(value) > 0 for value in given.values() if is_iterable(value)):
-        return _many_parameters(given, newmark_beta)
+    arguments = {"stiffness k": k, "damping c": c, "timestep": timestep, "inverse_weight": inverse_weight}
+    if any(isinstance(value, list | tuple) or np.ndim(value) > 0 for value in arguments.values() if is_iterable(value)):
+        return _many_parameters(arguments, newmark_beta)
     k = require_within("stiffness k", k, 1e-30, 1e30, "N/m")
     c = require_within("damping c", c, 0.0, 1e30, "N s/m")
     timestep = require_within("timestep", timestep, 1e-12, 1e3, "s")
@@ -222,20 +222,20 @@ def contact_parameters(
     return ContactParameters(solref=(stiffness, damping), solimp=(d, d, 0.001, 0.5, 2.0), inertia=inertia)
 
 
-def _many_parameters(given: dict[str, Numbers], newmark_beta: float) -> ManyContactParameters:
+def _many_parameters(arguments: dict[str, Numbers], newmark_beta: float) -> ManyContactParameters:
     """The parameters of arrays of contacts, one by one."""
-    arrays = [require_reals(name, value, "numbers or arrays of numbers") for name, value in given.items()]
+    arrays = [require_reals(name, value, "numbers or arrays of numbers") for name, value in arguments.items()]
     try:
         together = np.broadcast_arrays(*arrays)
     except ValueError:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(given, arrays, strict=True))
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(arguments, arrays, strict=True))
         raise ValueError(f"the shapes of {shapes} do not go together") from None
     solref, solimp = np.empty((*together[0].shape, 2)), np.empty((*together[0].shape, 5))
     inertia = np.empty(together[0].shape)
     for i in np.ndindex(inertia.shape):
         k, c, h, weight = (float(array[i]) for array in together)
-        made = contact_parameters(k, c, timestep=h, inverse_weight=weight, newmark_beta=newmark_beta)
-        solref[i], solimp[i], inertia[i] = made.solref, made.solimp, made.inertia
+        parameters = contact_parameters(k, c, timestep=h, inverse_weight=weight, newmark_beta=newmark_beta)
+        solref[i], solimp[i], inertia[i] = parameters.solref, parameters.solimp, parameters.inertia
     return ManyContactParameters(solref, solimp, inertia)
 
 

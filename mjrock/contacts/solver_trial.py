@@ -46,23 +46,23 @@ def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
     Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
     """
     trial = SolverTrial(pose, landed)
-    own, cap, searches = trial.own, max(trial.own[0], MOST_ITERATIONS), max(trial.own[1], LINE_SEARCHES)
+    given, cap, searches = trial.own, max(trial.own[0], MOST_ITERATIONS), max(trial.own[1], LINE_SEARCHES)
     try:
         result = trial.run(cap, searches)
     except mujoco.FatalError:  # the memory of the model is too small for the contacts
         result = TrialResult()
     if not result.carried:
-        return SolverNeed(*own, tried=False)
+        return SolverNeed(*given, tried=False)
     if result.most < cap:
-        return SolverNeed(*own) if result.enough else SolverNeed(max(2 * result.most, own[0]), searches)
+        return SolverNeed(*given) if result.enough else SolverNeed(max(2 * result.most, given[0]), searches)
     option = trial.model.opt
     full = float(option.impratio) if trial.contacts.has_friction else 1.0
     for power in range(math.ceil(math.log10(full)) - 1, -1, -1):
         option.impratio = 10.0**power
-        most = trial.run(cap, searches).most
-        if 2 * most <= cap:
-            return SolverNeed(max(2 * most, own[0]), searches, converges=False, impratio=10.0**power)
-    return SolverNeed(*own, converges=False)
+        turns = trial.run(cap, searches).most
+        if 2 * turns <= cap:
+            return SolverNeed(max(2 * turns, given[0]), searches, converges=False, impratio=10.0**power)
+    return SolverNeed(*given, converges=False)
 
 
 @dataclass
@@ -103,8 +103,8 @@ class PressedPoint:
             for body, place in zip(self.bodies, self.places, strict=True)
         )
         self.row.dist = float((first - second) @ -self.row.frame[:3]) - self.apart
-        still = [model.body_weldid[body] == 0 for body in self.bodies]
-        self.row.pos = second if still[0] else first if still[1] else 0.5 * (first + second)
+        fixed = [model.body_weldid[body] == 0 for body in self.bodies]
+        self.row.pos = second if fixed[0] else first if fixed[1] else 0.5 * (first + second)
         mujoco.mj_addContact(model, data, self.row)
 
 
@@ -126,7 +126,7 @@ class SolverTrial:
         if contacts.has_friction:
             option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
             option.impratio = max(float(option.impratio), contacts.impratio, 1.0)
-        self.pressed = [point for each in _that_meet(pose.model, landed) for point in _points(pose, *each)]
+        self.pressed = [point for pair in _contacts_that_meet(pose.model, landed) for point in _points(pose, *pair)]
         self.named = np.sort([contact.ids for contact in contacts], axis=1)
 
     def run(self, cap: int, searches: int) -> TrialResult:
@@ -140,16 +140,16 @@ class SolverTrial:
                 for _ in range(STEPS):
                     self._find_contacts(data)
                     fewer = self._forces(data, *self.own)
-                    turns, exact = self._exact(data, cap, searches)
+                    turns, exact = self._exact_solution(data, cap, searches)
                     if not np.abs(data.qacc).max(initial=0) < LARGEST_ACCELERATION:
                         break
                     result.most = max(result.most, turns)
                     result.enough &= _are_equal(fewer, exact)
-                    result.carried |= self._carries(data)
+                    result.carried |= self._carries_force(data)
                     mujoco.mj_Euler(self.model, data)
         return result
 
-    def _exact(self, data: mujoco.MjData, cap: int, searches: int) -> tuple[int, Array]:
+    def _exact_solution(self, data: mujoco.MjData, cap: int, searches: int) -> tuple[int, Array]:
         """Iterations of the model's solver, of `cap` with `searches` line searches, and forces of Newton's method [N].
 
         A solver that ends at its last iteration may only miss its tolerance. Half of the iterations, and so on, count
@@ -181,20 +181,20 @@ class SolverTrial:
     def _forces(self, data: mujoco.MjData, iterations: int, searches: int, solver: int | None = None) -> Array:
         """The forces that a solver, or that of the model, finds with a number of iterations and line searches [N]."""
         option = self.model.opt
-        own, option.solver = option.solver, option.solver if solver is None else solver
+        solver_before, option.solver = option.solver, option.solver if solver is None else solver
         option.iterations, option.ls_iterations = iterations, searches
         start = np.array(data.qacc_warmstart)
         mujoco.mj_forwardSkip(self.model, data, POSITION, 1)
-        data.qacc_warmstart[:], option.solver = start, own
+        data.qacc_warmstart[:], option.solver = start, solver_before
         return np.array(data.efc_force)
 
-    def _carries(self, data: mujoco.MjData) -> bool:
+    def _carries_force(self, data: mujoco.MjData) -> bool:
         """Whether one of the points carries a force."""
         rows = data.contact.efc_address[data.ncon - len(self.pressed) :] if self.pressed else np.zeros(0, int)
         return bool(np.any(data.efc_force[rows[rows >= 0]] > 0))
 
 
-def _that_meet(model: mujoco.MjModel, landed: Sequence[Landed]) -> Iterator[Landed]:
+def _contacts_that_meet(model: mujoco.MjModel, landed: Sequence[Landed]) -> Iterator[Landed]:
     """The contacts that act together: those of geoms that touch, and of each geom that moves the nearest one."""
     nearest: dict[int, float] = {}
     for contact, landing in landed:

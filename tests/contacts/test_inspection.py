@@ -7,7 +7,7 @@ from everyday import among
 from pairs import FLAT_BOX, ON_A_PLANE, made_for, since
 
 import mjrock as mr
-from mjrock.contacts.effective_mass import _slipping
+from mjrock.contacts.effective_mass import _slipping_impulse
 
 MODEL = """<mujoco><option timestep="{h}" cone="{cone}" impratio="{impratio}" gravity="0 0 0"><flag {flags}/></option>
 <worldbody><geom name="floor" type="plane" size="5 5 .1" {floor}/>
@@ -262,7 +262,7 @@ def test_bodies_that_a_rigid_constraint_holds_cannot_approach(height):
 def test_friction_is_opposite_to_the_slip_that_it_leaves():
     """A weight of which one direction is free of rounding only, as of a fish that lies in its plane of symmetry."""
     weight = np.array([[171.7, -46.1, 0.0], [-46.1, 44.1, 0.0], [6.6e-34, -6.8e-34, 2177.1]])
-    _, first, second = impulse = _slipping(weight, 1.0)
+    _, first, second = impulse = _slipping_impulse(weight, 1.0)
     slip = weight[1:] @ impulse
     assert np.hypot(first, second) == pytest.approx(1)
     assert -(slip @ (first, second)) == pytest.approx(np.linalg.norm(slip))
