@@ -42,15 +42,15 @@ def ends_of(points: Array) -> Array:
 
 def round_length(wide: float) -> float:
     """The length of a scale bar of a picture so wide [m]: 1, 2 or 5 times a power of ten, at most a quarter of it."""
-    most = BAR * wide * (1 + 1e-9)
-    power = float(10.0 ** np.floor(np.log10(most)))
-    return power * max(step for step in (1, 2, 5) if step * power <= most)
+    longest = BAR * wide * (1 + 1e-9)
+    power = float(10.0 ** np.floor(np.log10(longest)))
+    return power * max(step for step in (1, 2, 5) if step * power <= longest)
 
 
 def padded_rows(rows: Sequence[Array]) -> Array:
     """Rows of points as one array; shorter ones repeat their last point."""
-    most = max(map(len, rows))
-    return np.array([np.concatenate([row, np.repeat(row[-1:], most - len(row), axis=0)]) for row in rows])
+    count = max(map(len, rows))
+    return np.array([np.concatenate([row, np.repeat(row[-1:], count - len(row), axis=0)]) for row in rows])
 
 
 def required_limits(limits: ArrayLike | None, axes: str) -> Array | None:
@@ -132,15 +132,15 @@ class Bodies:
         if not self.outlines:
             return ends_of(np.concatenate(fixed))
         frames = np.unique(np.linspace(0, len(self.t) - 1, 500).astype(int)).tolist()
-        moving, rest = (
+        moving, at_rest = (
             ends_of(np.array([self.corners(frame) for frame in frames])),
             ends_of(case.rests[:, None] + self._padded),
         )
         stays = ends_of(np.concatenate(fixed) if fixed else case.rests)
-        room = float((rest[1] - rest[0]).max())
+        room = float((at_rest[1] - at_rest[0]).max())
         beyond = 0.25 * room
-        low = np.minimum(np.maximum(moving[0], rest[0] - [2 * room, beyond]), rest[1])
-        high = np.maximum(np.minimum(moving[1], rest[1] + 2 * room), rest[0])
+        low = np.minimum(np.maximum(moving[0], at_rest[0] - [2 * room, beyond]), at_rest[1])
+        high = np.maximum(np.minimum(moving[1], at_rest[1] + 2 * room), at_rest[0])
         fixed_shown = np.maximum(stays[0], low - beyond), np.minimum(stays[1], high + beyond)
         return np.array([np.minimum(low, fixed_shown[0]), np.maximum(high, fixed_shown[1])])
 
@@ -254,10 +254,10 @@ def link(ax: Axes, moving: BodyMotion, tie: Anchored, ends: Array) -> Update:
     broke."""
     pulls, broken = pulling(moving, tie)
     (line,) = ax.plot(*np.empty((ends.shape[2], 0)), color=tie.colour, linewidth=1.8, zorder=4, animated=True)
-    put = getattr(line, "set_data" if ends.shape[2] == 2 else "set_data_3d")
+    set_points = getattr(line, "set_data" if ends.shape[2] == 2 else "set_data_3d")
 
     def update(frame: int) -> None:
-        put(*ends[frame].T)
+        set_points(*ends[frame].T)
         line.set_linestyle(tie.dashes if pulls[frame] else ":")
         line.set_visible(not broken[frame])
 

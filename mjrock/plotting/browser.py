@@ -112,7 +112,7 @@ class Page:
     def run(self) -> Json:
         """All that the script of the page needs."""
         room = CAMERA_ROOM * self.extent
-        fixed = [one.rest + one.corners for i, one in enumerate(self.bodies) if one.fixed and not self.grounds[i]]
+        fixed = [body.rest + body.corners for i, body in enumerate(self.bodies) if body.fixed and not self.grounds[i]]
         low, high = ends_of(np.concatenate([*self.reached[:, None], *fixed]))
         low, high = np.maximum(low, self.low - room), np.minimum(high, self.high + room)
         moves = [i for i, body in enumerate(self.bodies) if body.moves]
@@ -161,7 +161,7 @@ class Page:
         """The ground as a disc that reaches beyond all blocks, or None where blocks fall past the edge of it."""
         if not self.grounds.any():
             return None
-        corners = np.concatenate([one.rest + one.corners for i, one in enumerate(self.bodies) if self.grounds[i]])
+        corners = np.concatenate([body.rest + body.corners for i, body in enumerate(self.bodies) if self.grounds[i]])
         level = float(corners[:, 2].max())
         if self.reached[0, 2] < level - DEEPEST_SUNK * self.extent:
             return None
@@ -238,9 +238,9 @@ class Page:
         widest[-1] = max(widest[-1], self.response.opening.max(initial=0.0))
         return [float(f"{width:.4g}") for width in widest]
 
-    def _instants(self, given: ArrayLike) -> Array:
+    def _instants(self, instants: ArrayLike) -> Array:
         """Times of the points of a line, and then those given within the run [s]."""
-        times, start, end = np.asarray(given), float(self.t[0]), float(self.t[-1])
+        times, start, end = np.asarray(instants), float(self.t[0]), float(self.t[-1])
         return np.append(np.linspace(start, end, LINE_POINTS), times[(start <= times) & (times <= end)])
 
 

@@ -56,7 +56,7 @@ def rotation(
         reached.append(float(np.abs(share[response.t <= (np.inf if end is None else end)]).max()))
     ax.axhline(0, color="0.8", linewidth=0.6, zorder=0)
     far_limit = 4 * max(reached)  # a line there would flatten the motion
-    limits = {case.overturning_rotation / case.wall.alpha for case, _ in (each.of_wall for each in responses)}
+    limits = {case.overturning_rotation / case.wall.alpha for case, _ in (response.of_wall for response in responses)}
     limits_drawn = [limit for limit in sorted(limits) if abs(limit - 1) > 0.01 and limit < far_limit]
     for limit in limits_drawn:
         ax.axhline(limit, color="0.4", linewidth=0.8, linestyle=":", zorder=1)

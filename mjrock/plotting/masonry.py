@@ -84,7 +84,7 @@ def blocks(
     elif at is not None or forces is not None:
         raise ValueError("at and forces are for a response; give one in place of masonry, and no pose")
     else:
-        moving = _at_pose(masonry, pose, magnified)
+        moving = _motion_at_pose(masonry, pose, magnified)
     case = cast(MasonryCase, moving.case)
     if case.in_space:
         bodies = Solids(moving, camera, required_limits(limits, "xyz"))
@@ -102,15 +102,15 @@ def blocks(
     return ax
 
 
-def _at_pose(masonry: Masonry | Response, pose: ArrayLike | None, magnified: float) -> BodyMotion:
+def _motion_at_pose(masonry: Masonry | Response, pose: ArrayLike | None, magnified: float) -> BodyMotion:
     """Masonry, or that of a response with its supports as they are drawn, at a pose; at rest without one."""
     case = replace(masonry.of_masonry, supports=()) if isinstance(masonry, Response) else MasonryCase(masonry, 1.0)
     freedom = SPACE if case.in_space else PLANE
-    rest = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
-    return BodyMotion(case, np.zeros(1), (rest if pose is None else _of_free(case.masonry, pose))[None], magnified)
+    poses = at_rest(len(case.bodies), freedom).reshape(-1, freedom.nq)
+    return BodyMotion(case, np.zeros(1), (poses if pose is None else _free_pose(case.masonry, pose))[None], magnified)
 
 
-def _of_free(masonry: Masonry, pose: ArrayLike) -> Array:
+def _free_pose(masonry: Masonry, pose: ArrayLike) -> Array:
     """The pose of the free blocks, from one of them or of all blocks.
 
     Raises:
@@ -270,10 +270,10 @@ def draw_loads(
             outlines.append(_arrow(ax, place, force, length, width, with_names))
     if outlines:
         (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
-        least, most = (end(np.concatenate(outlines), axis=0) for end in (np.min, np.max))
+        lowest, highest = (end(np.concatenate(outlines), axis=0) for end in (np.min, np.max))
         room = NAME_ROOM * size
-        ax.set_xlim(min(left, least[0] - room), max(right, most[0] + room))
-        ax.set_ylim(min(low, least[1] - room), max(high, most[1] + room))
+        ax.set_xlim(min(left, lowest[0] - room), max(right, highest[0] + room))
+        ax.set_ylim(min(low, lowest[1] - room), max(high, highest[1] + room))
 
 
 def _force_of(masonry: Masonry, effect: Effect) -> tuple[Array, Array] | None:

@@ -53,7 +53,7 @@ def png_of(shown: object) -> bytes | None:
     Its title is the line that it prints as, without that of its wall or masonry, which the picture shows.
     """
     title = re.sub(r" of <[^<>]*>", "", repr(shown)).strip("<>")
-    draw = next(draw for kind, draw in PICTURES.items() if isinstance(shown, kind))
+    draw = next(draw for shown_type, draw in PICTURES.items() if isinstance(shown, shown_type))
     picture_drawn = draw(shown, title)
     if not isinstance(picture_drawn, Axes):
         return None if picture_drawn is None else png(picture_drawn)

@@ -173,16 +173,16 @@ def picture(**own: Check) -> PictureDecorator:
         on_axes = next(iter(signature.parameters)) == "ax"
 
         @functools.wraps(draw)
-        def checked(*given: object, ax: Axes | None = None, **options: object) -> object:
+        def checked(*arguments: object, ax: Axes | None = None, **options: object) -> object:
             if ax is not None:
-                given = (ax, *given)
-            elif on_axes and not (given and isinstance(given[0], Axes)):
-                given = (own_axes(next(iter((*given, *options.values())), None)), *given)
-            for name, value in signature.bind(*given, **options).arguments.items():
+                arguments = (ax, *arguments)
+            elif on_axes and not (arguments and isinstance(arguments[0], Axes)):
+                arguments = (own_axes(next(iter((*arguments, *options.values())), None)), *arguments)
+            for name, value in signature.bind(*arguments, **options).arguments.items():
                 check = own.get(name) or CHECKS.get(name)
                 if check is not None and not (value is None and signature.parameters[name].default is None):
                     check(name, value)
-            return draw(*given, **options)
+            return draw(*arguments, **options)
 
         return checked
 

@@ -179,15 +179,15 @@ class Solids:
         """
         if self.limits is not None:
             return self.limits.T
-        rest = ends_of(self.facets.corners + self.case.centroids[self.facets.block, None])
-        room = float((rest[1] - rest[0]).max())
-        shown = np.array([np.maximum(self.reached[0], rest[0] - room), np.minimum(self.reached[1], rest[1] + room)])
-        return shown if (shown[0] < shown[1]).all() else rest
+        bounds = ends_of(self.facets.corners + self.case.centroids[self.facets.block, None])
+        room = float((bounds[1] - bounds[0]).max())
+        shown = np.array([np.maximum(self.reached[0], bounds[0] - room), np.minimum(self.reached[1], bounds[1] + room)])
+        return shown if (shown[0] < shown[1]).all() else bounds
 
     @cached_property
     def reached(self) -> Array:
         """The lowest and the highest x, y and z of all corners [m], shape (2, 3)."""
-        return ends_of(np.array([ends_of(self.corners(frame)) for frame in self._some]))
+        return ends_of(np.array([ends_of(self.corners(frame)) for frame in self._sampled_frames]))
 
     @cached_property
     def across(self) -> Array:
@@ -204,7 +204,7 @@ class Solids:
         """
         low, high = self.extent()
         box = np.stack(np.meshgrid(*np.transpose([low, high]), indexing="ij"), axis=-1).reshape(-1, 3)
-        clipped = (np.clip(self.corners(frame), low, high) for frame in self._some)
+        clipped = (np.clip(self.corners(frame), low, high) for frame in self._sampled_frames)
         corner_sets = [box] if self.limits is not None else list(clipped)
         return ends_of(np.array([ends_of(corners.reshape(-1, 3) @ self.across.T) for corners in corner_sets]))
 
@@ -214,7 +214,7 @@ class Solids:
         return np.asarray(np.ptp(self.seen, axis=0))
 
     @property
-    def _some(self) -> list[int]:
+    def _sampled_frames(self) -> list[int]:
         """Numbers of at most 100 frames, from the first to the last."""
         numbers: list[int] = np.unique(np.linspace(0, len(self.t) - 1, 100).astype(int)).tolist()
         return numbers

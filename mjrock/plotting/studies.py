@@ -308,7 +308,7 @@ Closed = Mapping[str, tuple[ArrayLike, ArrayLike]]
 def pushover(ax: Axes, curves: Mapping[str, PushoverCurve], closed: Closed | None = None) -> Axes:
     """Multiplier against rotation, a line a curve, with closed forms as points, and where ties yield and break."""
     _drawn(ax, {name: (curve.rotation, curve.multiplier) for name, curve in curves.items()}, closed or {})
-    _marked(ax, curves)
+    _mark_ties(ax, curves)
     ax.set_ylabel(r"multiplier $\lambda$ [-]")
     return ax
 
@@ -346,27 +346,27 @@ def push(ax: Axes, curves: Mapping[str, Push], closed: Closed | None = None) -> 
     return ax
 
 
-def _marked(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
+def _mark_ties(ax: Axes, curves: Mapping[str, PushoverCurve]) -> None:
     """A triangle where ties of a curve yield and a cross where they break, which the legend names once."""
     labels = dict[str, Look]()
     for line, curve in zip(list(ax.get_lines()), curves.values(), strict=False):
         plain = plain_names(curve.ties[0] | curve.ties[1])
-        for (what, marker), reached in zip((("yield", "v"), ("break", "x")), curve.ties, strict=True):
+        for (event, marker), reached in zip((("yield", "v"), ("break", "x")), curve.ties, strict=True):
             if not reached:
                 continue
             names = sorted(reached, key=reached.__getitem__)
             near = np.searchsorted(curve.rotation, [reached[name] for name in names])
             heights = [float(curve.multiplier[max(i - 2, 0) : i + 1].max()) for i in near.tolist()]  # before it falls
-            text = folded(f"{named([plain[name] for name in names])} {what}{'' if len(names) > 1 else 's'}")
+            text = folded(f"{named([plain[name] for name in names])} {event}{'' if len(names) > 1 else 's'}")
             look: Look = {"marker": marker, "markersize": 6, "zorder": 5, "linestyle": ""}
             ax.plot([reached[name] for name in names], heights, **look, color=line.get_color())
             labels[text] = look | {"color": "0.3" if text in labels else line.get_color()}
     for text, look in labels.items():
         ax.plot([], [], **look, label=text)
-    _named(ax)
+    _add_legend(ax)
 
 
-def _named(ax: Axes) -> None:
+def _add_legend(ax: Axes) -> None:
     """A legend of what has a name."""
     if ax.get_legend_handles_labels()[1]:
         ax.legend(**ON_LINES)
@@ -380,7 +380,7 @@ def _drawn(ax: Axes, lines: Mapping[str, tuple[ArrayLike, ArrayLike]], points: C
         colour = OWN[list(lines).index(name) % len(OWN)]["color"] if name in lines else "0.4"
         label = "closed forms" if i == 0 else None
         ax.plot(x, y, "o", color=colour, markerfacecolor="white", markersize=4, linestyle="", zorder=4, label=label)
-    _named(ax)
+    _add_legend(ax)
     ax.set(xlim=(0, None), ylim=(0, None), xlabel=r"rotation $\theta$ [rad]")
 
 
@@ -407,25 +407,25 @@ def tornado(ax: Axes, found: Sensitivity, labels: Mapping[str, str] | None = Non
     if any(len(names) > 1 for names in found.changed):
         bars["together"] = found.range
     finite = found.values[np.isfinite(found.values)]
-    least, most = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    width = most - least or 0.1 * (abs(most) or 1.0)
-    edge = most + 0.12 * width  # where an overturned wall is drawn
+    lowest, highest = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    width = highest - lowest or 0.1 * (abs(highest) or 1.0)
+    edge = highest + 0.12 * width  # where an overturned wall is drawn
     for i, (name, ends) in enumerate(bars.items()):
         low, high = (edge if end == math.inf else end for end in ends)
         colour = "0.75" if name == "together" else ORANGE if name == found.governs else BLUE
         ax.barh(i, high - low, left=low, color=colour, height=0.55)
         for end, x, side, shift in zip(ends, (low, high), ("right", "left"), (-4, 4), strict=True):
-            text = found.written(end) if low == high else _apart(found, *ends)[end == ends[1]]
+            text = found.written(end) if low == high else _distinct_texts(found, *ends)[end == ends[1]]
             look: Look = {"ha": side, "va": "center", "fontsize": 8, "bbox": BEHIND}
             ax.annotate(text, (x, i), (shift, 0), textcoords="offset points", **look)
     if math.isfinite(found.base_value):
         ax.axvline(found.base_value, color="0.15", linewidth=1.0)
     if not np.isfinite(found.values).all():
         ax.axvline(edge, color="0.15", linewidth=1.0, linestyle="--")
-    ax.set_yticks(range(len(bars)), [f"{called.get(name, name)}\n{_tried(found, name)}".strip() for name in bars])
+    ax.set_yticks(range(len(bars)), [f"{called.get(name, name)}\n{_trials(found, name)}".strip() for name in bars])
     ax.invert_yaxis()
     right = 0.12 if np.isfinite(found.values).all() else 0.4  # room for the word at the end of a bar
-    ax.set_xlim(least - 0.2 * width, edge + right * width)
+    ax.set_xlim(lowest - 0.2 * width, edge + right * width)
     ax.set_xlabel(f"{called[found.measure]}{f' [{found.unit}]' if found.unit else ''}")
     governs = found.governs or ""
     sentence = found.sentence.replace(f"governed by {governs}", f"governed by {called.get(governs)}")
@@ -480,17 +480,17 @@ def _apart_enough(values: Sequence[float]) -> bool:
     return len(row) == 1 or bool(np.diff(row).min() > NEAREST * np.ptp(row) > 0)
 
 
-def _tried(found: Sensitivity, setting: str) -> str:
+def _trials(study: Sensitivity, setting: str) -> str:
     """The values of a setting that were tried, with the unit of the settings that have a known one."""
-    values = list(dict.fromkeys(row[setting] for row in found.rows)) if setting in found.settings else []
+    values = list(dict.fromkeys(row[setting] for row in study.rows)) if setting in study.settings else []
     if len(values) < 2 or not all(isinstance(value, int | float) for value in values):
         return ", ".join(setting_text(value) for value in values)
     return f"{power_of_ten(min(values))} to {power_of_ten(max(values))} {SETTINGS.get(setting, '')}".strip()
 
 
-def _apart(found: Sensitivity, low: float, high: float) -> tuple[str, str]:
+def _distinct_texts(study: Sensitivity, low: float, high: float) -> tuple[str, str]:
     """Two ends of a bar as text, with as many digits as it takes to distinguish them."""
-    texts = found.written(low), found.written(high)
+    texts = study.written(low), study.written(high)
     digits = 3
     while texts[0] == texts[1] and digits < 9:
         texts, digits = (f"{low:.{digits}g}", f"{high:.{digits}g}"), digits + 1

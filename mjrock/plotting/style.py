@@ -63,9 +63,9 @@ OWN: tuple[Look, ...] = (
 class Picture(Figure):
     """A figure without `pyplot`, which a notebook shows by itself."""
 
-    def add_subplot(self, *given: Any, **options: object) -> Axes:
+    def add_subplot(self, *arguments: Any, **options: object) -> Axes:
         """A new Axes, whose lines have the colours of this package."""
-        ax: Axes = super().add_subplot(*given, **options)
+        ax: Axes = super().add_subplot(*arguments, **options)
         ax.set_prop_cycle(color=PALETTE)
         return ax
 
@@ -106,8 +106,8 @@ def plain_names(names: Iterable[str]) -> dict[str, str]:
     all_names = list(names)
     kinds = Counter(name.rpartition("_")[0] for name in all_names)
     return {
-        name: kind.replace("_", " ") if number == "0" and kind and kinds[kind] == 1 else name
-        for name, (kind, _, number) in zip(all_names, (name.rpartition("_") for name in all_names), strict=True)
+        name: stem.replace("_", " ") if number == "0" and stem and kinds[stem] == 1 else name
+        for name, (stem, _, number) in zip(all_names, (name.rpartition("_") for name in all_names), strict=True)
     }
 
 
@@ -145,8 +145,8 @@ def legend_below(
 
 def wrapped(text: str, wide: float, size: float) -> str:
     """Text of a size [pt] on as many lines as a width [inch] needs."""
-    most = max(1, int(72 * wide / (0.55 * size)))
-    return "\n".join(line for row in text.splitlines() for line in textwrap.wrap(row, most))
+    columns = max(1, int(72 * wide / (0.55 * size)))
+    return "\n".join(line for row in text.splitlines() for line in textwrap.wrap(row, columns))
 
 
 def width_of(figure: Figure, text: str, size: float) -> float:

@@ -320,6 +320,6 @@ def _sizes(case: Case) -> list[str]:
     for opening, count in Counter(replace(opening, at=None) for opening in case.block.openings).items():
         number = f"{count} openings" if count > 1 else "opening"
         sill = f"sill at {opening.sill:.3g} m" if opening.sill else "from the ground"
-        kind = "round " if opening.round else ""
-        lines.append(f"{kind}{number} {opening.width:.3g} x {opening.height:.3g} m, {sill}")
+        shape = "round " if opening.round else ""
+        lines.append(f"{shape}{number} {opening.width:.3g} x {opening.height:.3g} m, {sill}")
     return lines

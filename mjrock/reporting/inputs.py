@@ -205,8 +205,8 @@ def block_inputs(block: Block, words: Words) -> list[Input]:
         rows.append(Input("plumb", words("in_plumb"), words(f"plumb_{block.plumb}")))
     if block.gable is not None:
         texts = {"height": words.quantity(block.gable.height, "m"), "top": words.quantity(block.gable.top, "m")}
-        kind = "gable" if block.gable.top else "gable_pointed"
-        rows.append(Input("gable", words("in_gable"), words(kind, **texts)))
+        key = "gable" if block.gable.top else "gable_pointed"
+        rows.append(Input("gable", words("in_gable"), words(key, **texts)))
     for opening, count in Counter(block.openings).items():
         name = "round_opening" if opening.round else "opening"
         texts = {key: words.number(getattr(opening, key)) for key in ("width", "height", "sill")}

@@ -134,7 +134,7 @@ def image_of(figure: Figure, words: Words, *, of_user: bool = False) -> str:
     for text, content in zip(texts, was, strict=True):
         text.set_text(words.drawn(content))
     if words.mark != "." and not of_user:
-        _marked(figure, words)
+        _write_marks(figure, words)
     file = BytesIO()
     figure.savefig(file, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
     if of_user:
@@ -165,7 +165,7 @@ class MarkedTicks(Formatter):
         return self.words.marked(self.written.get_offset())
 
 
-def _marked(figure: Figure, words: Words) -> None:
+def _write_marks(figure: Figure, words: Words) -> None:
     """Write the decimal mark of the language at the ticks and in the texts of a figure."""
     for ax in figure.axes:
         for text in ax.texts:
@@ -179,7 +179,7 @@ def page(words: Words, title: str, project: str, version: str, parts: Sequence[M
     margins = {"TITLE": title, "PROJECT": project, "VERSION": version, "PAGE": words("page")}
     look = re.sub(
         f'"({"|".join(margins)})',
-        lambda found: f'"{_in_style(margins[found[1]])}',
+        lambda match: f'"{_in_style(margins[match[1]])}',
         STYLE_SHEET.read_text(encoding="utf-8"),
     )
     size = '<meta name="viewport" content="width=device-width, initial-scale=1">'

@@ -109,8 +109,8 @@ def report(
     mechanisms = required_checks(checks, case_name)
     runs = required_runs(Request(case, responses, labels, mechanisms, not (checks or sections)), words)
     parts = parts_of(case_name, case, mechanisms, runs)
-    kind = "several" if parts[1:] else verdicts.kind_of(parts[0].subjects[0].subject)
-    heading = words(f"title_{kind}") if title is None else require_text("title", title)
+    subject_kind = "several" if parts[1:] else verdicts.kind_of(parts[0].subjects[0].subject)
+    heading = words(f"title_{subject_kind}") if title is None else require_text("title", title)
     named_subjects = inputs.named_subjects(case_name, case, mechanisms, runs)
     subjects = [subject for _, subject in named_subjects]
     input_groups = {
@@ -456,9 +456,9 @@ def contact_groups(
     cases = {run.variant: run.response.case for run in runs}
     e_of = dict(e) if isinstance(e, Mapping) else {"": e}
     contacts_of = dict(contacts) if isinstance(contacts, Mapping) else {"": contacts}
-    for name, kind, value_of in (("e", Restitution, e_of), ("contacts", Contacts, contacts_of)):
+    for name, required, value_of in (("e", Restitution, e_of), ("contacts", Contacts, contacts_of)):
         for variant, value in value_of.items():
-            require_kind(f"{name}[{variant!r}]" if variant else name, value, kind, type(None))
+            require_kind(f"{name}[{variant!r}]" if variant else name, value, required, type(None))
             cases.get(variant, case_of(case)).require_own_joints(value)
     return [
         inputs.InputGroup(variant, inputs.contact_inputs(e_of.get(variant), contacts_of.get(variant), words))
@@ -510,9 +510,9 @@ def input_section(
                 basis = bases[known.key] if known.key in bases else element("td", words(known.basis), kind="short")
                 cells.append((known.name, *spanned([DASH if cell is None else cell.value for cell in row]), basis))
             names = columns.names if any(columns.names) else [words("input_value")]
-            kind = "inputs" if len(names) == 1 else "beside"
+            table_class = "inputs" if len(names) == 1 else "beside"
             pieces.append(element("p", element("b", heading), kind="head"))
-            pieces.append(table([words("input_name"), *names, words("input_basis")], cells, kind=kind))
+            pieces.append(table([words("input_name"), *names, words("input_basis")], cells, kind=table_class))
     return pieces
 
 

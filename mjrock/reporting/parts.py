@@ -57,7 +57,7 @@ class Part:
     @property
     def names(self) -> str:
         """The names of all that it has."""
-        return "; ".join(dict.fromkeys(name for one in self.subjects for name in one.names))
+        return "; ".join(dict.fromkeys(name for subject in self.subjects for name in subject.names))
 
     @property
     def run_names(self) -> str:

@@ -54,10 +54,10 @@ SHARED = 4
 @cache
 def texts(*more: Path) -> dict[str, dict[str, str]]:
     """Every text by its key and its language: those of the report, and those of further files."""
-    found: dict[str, dict[str, str]] = {}
+    every_text: dict[str, dict[str, str]] = {}
     for file in (FILE, *more):
-        found |= tomllib.loads(file.read_text(encoding="utf-8"))
-    return found
+        every_text |= tomllib.loads(file.read_text(encoding="utf-8"))
+    return every_text
 
 
 @cache
@@ -80,7 +80,7 @@ def plain_patterns(language: str) -> list[tuple[re.Pattern[str], str]]:
     """Messages that are raised without a template, with groups for the values, and their texts in a language; the one
     that states most comes first."""
     texts = messages()["texts"].get(language, {})
-    return [(_pattern(one), texts[one]) for one in sorted(texts, key=lambda one: -len(re.sub("{.*?}", "", one)))]
+    return [(_pattern(text), texts[text]) for text in sorted(texts, key=lambda text: -len(re.sub("{.*?}", "", text)))]
 
 
 def _pattern(template: str) -> re.Pattern[str]:
@@ -126,12 +126,12 @@ class Words:
     def _drawn_line(self, line: str) -> str:
         line = re.sub(r"[a-z_]+_\d+", lambda name: effect_name(name[0], self), line)
         for pattern, key in drawn_patterns():
-            if found := pattern.fullmatch(line):
+            if match := pattern.fullmatch(line):
                 values = {
                     name: re.sub(
                         r"(?<=\d)\.(?=\d)", self.mark, self.or_else(f"effect_{value.replace(' ', '_')}", value)
                     )
-                    for name, value in found.groupdict().items()
+                    for name, value in match.groupdict().items()
                 }
                 return self(key, **values)
         return self.marked(line) if WITH_UNIT.fullmatch(line) else line
@@ -154,10 +154,12 @@ class Words:
     def _plain(self, text: str) -> str:
         """A message without a template in this language; as it is where it has no text, or its cause has none."""
         for pattern, template in plain_patterns(self.language):
-            if found := pattern.fullmatch(text):
-                values = {name: self.message(value) for name, value in found.groupdict().items()}
-                if values.get("cause") is None or values["cause"] != found["cause"]:
-                    numbers = {name: self.marked(one) for name, one in values.items() if PRINTED_NUMBER.fullmatch(one)}
+            if match := pattern.fullmatch(text):
+                values = {name: self.message(value) for name, value in match.groupdict().items()}
+                if values.get("cause") is None or values["cause"] != match["cause"]:
+                    numbers = {
+                        name: self.marked(part) for name, part in values.items() if PRINTED_NUMBER.fullmatch(part)
+                    }
                     return template.format(**values | numbers)
         return text
 
@@ -217,18 +219,18 @@ class Filling(string.Formatter):
 
 def grouped(named: Iterable[tuple[str, Value]]) -> list[tuple[list[str], Value]]:
     """Equal values once, each with all of its names, in the order of the first."""
-    found: list[tuple[list[str], Value]] = []
+    groups: list[tuple[list[str], Value]] = []
     for name, value in named:
-        names = next((names for names, other in found if other == value), None)
+        names = next((names for names, other in groups if other == value), None)
         if names is None:
-            found.append(([name], value))
+            groups.append(([name], value))
         elif name not in names:
             names.append(name)
-    return found
+    return groups
 
 
 def effect_name(name: str, words: Words) -> str:
     """An effect, such as the second of the ties, in words; a limit state as it is."""
-    kind, _, number = name.rpartition("_")
-    known = words.or_else(f"effect_{kind}", "")
+    stem, _, number = name.rpartition("_")
+    known = words.or_else(f"effect_{stem}", "")
     return f"{known} {int(number) + 1}" if known and number.isdigit() else name

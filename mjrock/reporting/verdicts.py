@@ -133,7 +133,9 @@ def codes_of(mechanisms: Sequence[Mechanism], language: str) -> list[Code]:
     Raises:
         ValueError: for one without texts in the language of the report.
     """
-    checks = [check for one in mechanisms for check in (one.kinematic, *one.dynamic) if check is not None]
+    checks = [
+        check for mechanism in mechanisms for check in (mechanism.kinematic, *mechanism.dynamic) if check is not None
+    ]
     codes = {check.code.name: check.code for check in checks}
     for code in codes.values():
         if language not in code.languages:
@@ -158,8 +160,8 @@ def answer_parts(mechanisms: Sequence[Mechanism], others: Sequence[Subject], wor
     subjects = [*others, *(subject for mechanism in mechanisms for subject in mechanism.subjects)]
     proposals = [mechanism for mechanism in by_ratio if _is_proposal(mechanism, subjects)]
     present = [mechanism for mechanism in by_ratio if mechanism not in proposals]
-    kind = "governs" if present[1:] else "alone"
-    lines = [_sentence(mechanism, f"lead_{kind}", words, bool(proposals)) for mechanism in present[:1]]
+    lead = "governs" if present[1:] else "alone"
+    lines = [_sentence(mechanism, f"lead_{lead}", words, bool(proposals)) for mechanism in present[:1]]
     lines += [_sentence(mechanism, "lead_proposed", words, False) for mechanism in proposals]
     lines += [element("p", sentence) for sentence in method_sentences(by_ratio, words)]
     return [*lines, verdict_table(by_ratio, words)]
@@ -170,7 +172,9 @@ def method_sentences(mechanisms: Sequence[Mechanism], words: Words) -> list[str]
     one that holds by some of its methods, that these are alternatives."""
     sentences = []
     for method in METHODS:
-        names = [one.name for one in mechanisms if one.kinematic and one.kinematic.method == method]
+        names = [
+            mechanism.name for mechanism in mechanisms if mechanism.kinematic and mechanism.kinematic.method == method
+        ]
         start = "; ".join(names) + ": " if len(names) < len(mechanisms) else ""
         sentences += [start + words("method_counts", method=words(f"method_{method}"))] * bool(names)
     return sentences or [words("methods_alternative")] * any(_holds_by_one(mechanism) for mechanism in mechanisms)
@@ -183,7 +187,7 @@ def _holds_by_one(mechanism: Mechanism) -> bool:
         if verdict.limit_state:
             key = verdict.limit_state, verdict.what.partition(",")[0]
             holds[key] = verdict.holds and holds.get(key, True)
-    return any(holds[one] and not holds[other] and one[0] == other[0] for one, other in permutations(holds, 2))
+    return any(holds[a] and not holds[b] and a[0] == b[0] for a, b in permutations(holds, 2))
 
 
 def verdict_table(mechanisms: Sequence[Mechanism], words: Words) -> Markup:
@@ -238,19 +242,19 @@ def sentence_of(mechanism: Mechanism, key: str, words: Words) -> Sentence:
         key: of the words that it starts with.
         words: of the language.
     """
-    least, verdicts, kind = mechanism.least_verdict, mechanism.verdicts, mechanism.kind
+    least, verdicts, lead = mechanism.least_verdict, mechanism.verdicts, mechanism.kind
     refused = "; ".join(_check_and_state(verdict, words) for verdict in verdicts if not verdict.holds)
     numbers = {"ratio": words.ratio(least.ratio), "check": _check_and_state(least, words)}
     end = words("lead_ratio", held=mechanism.holding_count, count=len(verdicts), **numbers)
-    start = f"{words(key, name=mechanism.name)} {words(f'lead_{kind}', refused=refused)}"
-    return Sentence(kind, start, end)
+    start = f"{words(key, name=mechanism.name)} {words(f'lead_{lead}', refused=refused)}"
+    return Sentence(lead, start, end)
 
 
 def _sentence(mechanism: Mechanism, key: str, words: Words, is_present: bool) -> Markup:
     """The sentence on a mechanism as a paragraph; `is_present` calls it the present state."""
     is_present = is_present and words("as_it_is") not in mechanism.name.casefold()
-    kind, start, end = sentence_of(mechanism, f"{key}_now" if is_present else key, words)
-    return element("p", element("span", words(kind), kind=kind), " ", element("b", start), f" {end}")
+    lead, start, end = sentence_of(mechanism, f"{key}_now" if is_present else key, words)
+    return element("p", element("span", words(lead), kind=lead), " ", element("b", start), f" {end}")
 
 
 def _check_and_state(verdict: Verdict, words: Words) -> str:
@@ -272,9 +276,9 @@ def condition_cells(verdict: Verdict, words: Words) -> list[str]:
 
 def _marked_condition_cells(verdict: Verdict, words: Words) -> list[str]:
     """The same with what they look like."""
-    what, state, *numbers, word, clause = condition_cells(verdict, words)
-    kind = "holds" if verdict.holds else "fails"
-    return [what, state, *(element("td", one, kind="right") for one in numbers), element("td", word, kind=kind), clause]
+    check, state, *numbers, word, clause = condition_cells(verdict, words)
+    mark = "holds" if verdict.holds else "fails"
+    return [check, state, *(element("td", n, kind="right") for n in numbers), element("td", word, kind=mark), clause]
 
 
 def design_rows(design: Design, words: Words) -> list[list[str]]:
@@ -341,7 +345,7 @@ def governing_table(mechanisms: Sequence[Mechanism], records: Mapping[str, str],
         runs = [run for check in mechanism.dynamic for run in check.runs]
         worst_record = [DASH, DASH]
         if runs:
-            run = max(runs, key=lambda one: one.d)
+            run = max(runs, key=lambda run: run.d)
             name = run.name.removesuffix(REVERSED)
             d = words("fell") if math.isinf(run.d) else words.quantity(run.d, "m", FOUND)
             worst_record = [records.get(name, name) + (f" ({words('reversed')})" if name != run.name else ""), d]
@@ -410,8 +414,8 @@ def _value_cell(step: Step, check: MechanismCheck, words: Words) -> Markup:
     method = "linear" if step.key.endswith("linear_ratio") else "nonlinear"
     counts = step.key == "damage_ratio" or check.counts(method)
     counts &= step.key != "ratio" or not check.is_of_start(step.of)
-    kind = f"right {'holds' if step.value >= 1 else 'fails'}" if counts else "right"
-    return element("td", words.ratio(step.value), kind=kind)
+    cell_class = f"right {'holds' if step.value >= 1 else 'fails'}" if counts else "right"
+    return element("td", words.ratio(step.value), kind=cell_class)
 
 
 def effect_label(name: str, effect: Effect, words: Words) -> str:
