@@ -266,19 +266,19 @@ def _contact_work(
     for n in range(len(record.h)):
         recorded = take_step(points, record, windows, kinds, n, room)
         for i in range(len(joint)):
-            now = contact_in_step(points, record, recorded, room, i)
+            contact = contact_in_step(points, record, recorded, room, i)
             released = spring_energy(places, i, room.seam) - spring_energy(places, i, room.next_seam)
-            if not kinds.released_on[i] if n == 0 else now.gap >= 0:
+            if not kinds.released_on[i] if n == 0 else contact.gap >= 0:
                 work.dashpots[n, joint[i]] += released
                 continue
             # the dashpot of a point that has closed but does not press takes the energy that the spring releases
             opened = gap(places, i, room.frames, room.mean, room.mean).rate * windows.width[n]
-            work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 0 else released
+            work.dashpots[n, joint[i]] += contact.dashpot * opened if contact.law > 0 else released
             if places.friction[i] > 0:
-                lift = now.row - max(now.law, 0.0)  # what a sliding cone presses on top of the law
+                lift = contact.row - max(contact.law, 0.0)  # what a sliding cone presses on top of the law
                 if points.rubs[i] and lift > 0:
                     work.impulses[0] += lift * record.h[n]
-                    work.impulses[1] += max(now.law, 0.0) * record.h[n]
-                slipping = room.middle if now.coulomb else record.after[n]
+                    work.impulses[1] += max(contact.law, 0.0) * record.h[n]
+                slipping = room.middle if contact.coulomb else record.after[n]
                 slipped = slip_along(places, i, room.frames, room.mean, slipping) * windows.width[n]
-                work.friction[n] -= now.along * slipped + lift * opened
+                work.friction[n] -= contact.along * slipped + lift * opened

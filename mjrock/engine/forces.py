@@ -62,12 +62,12 @@ def kept_forces(case: AnyCase, scene: Scene, steps: Steps, t: Array, plastic: Ma
     _gather(points, steps.record, steps.windows, steps.kinds, LedgerRoom.for_scene(scene), loads)
     pose = steps.pose.reshape(len(steps.t), -1, scene.freedom.nq)
     ties = motion_of_ties(BodyMotion(case, steps.t, pose), plastic)
-    of = chosen[sample]
-    of_links = {name: ties[name].force[of] for name in scene.links.sprung.names}
-    of_links |= dict(zip(scene.links.damped.names, -steps.record.damping[of].T, strict=True))
+    step_of_sample = chosen[sample]
+    of_links = {name: ties[name].force[step_of_sample] for name in scene.links.sprung.names}
+    of_links |= dict(zip(scene.links.damped.names, -steps.record.damping[step_of_sample].T, strict=True))
     kept = KeptForces(
-        t=steps.t[of],
-        pose=pose[of],
+        t=steps.t[step_of_sample],
+        pose=pose[step_of_sample],
         loads=loads.loads[sample],
         contact_reactions=loads.contact_reactions[sample],
         links=of_links,
@@ -84,13 +84,13 @@ def _gather(
         n = into.steps[row]
         recorded = take_step(points, record, windows, kinds, n, room)
         for i in range(len(places.k)):
-            now = contact_in_step(points, record, recorded, room, i)
-            if not kinds.released_on[i] if n == 0 else now.gap >= 0:
+            contact = contact_in_step(points, record, recorded, room, i)
+            if not kinds.released_on[i] if n == 0 else contact.gap >= 0:
                 continue
             meets = where_friction_acts(places, meeting(places, i, room.frames))
-            slipping = room.middle if now.coulomb else record.after[n]
+            slipping = room.middle if contact.coulomb else record.after[n]
             direction = slip_of(meets.normal, relative_velocity(places, i, meets, room.frames, slipping)).direction
-            force = plus(scaled(now.row, meets.normal), scaled(now.along, direction))
+            force = plus(scaled(contact.row, meets.normal), scaled(contact.along, direction))
             body, joint = places.body[i], places.joint[i]
             at = plus(vector(into.rest, body, axes), plus(place(room.frames, body, axes), meets.arm))
             load = into.loads[row, joint]

@@ -99,17 +99,17 @@ def functions() -> dict[str, Any]:
     version = library.mj_versionString().decode()
     if version != mujoco.mj_versionString():
         raise RuntimeError(f"{path} is version {version} and not {mujoco.mj_versionString()}; reinstall mujoco")
-    found = {
+    library_functions = {
         "step": library.mj_step,
         "forward": library.mj_forward,
         "finish": library.mj_step2,
         "accelerate": library.mj_forwardSkip,
     }
     addresses = (ctypes.c_void_p, ctypes.c_void_p)
-    for name, function in found.items():
+    for name, function in library_functions.items():
         function.argtypes = (*addresses, ctypes.c_int, ctypes.c_int) if name == "accelerate" else addresses
         function.restype = None
-    return found
+    return library_functions
 
 
 def library_file(folder: Path) -> Path:

@@ -133,7 +133,7 @@ def near_the_origin(scene: Scene) -> Scene:
 def extent_of(scene: Scene) -> tuple[Array, float]:
     """Middle of the bodies at rest [m], shape (d,), and half of their largest extent along an axis [m]."""
     corners = np.concatenate(
-        [rest + outline for rest, outline in zip(scene.bodies.rest, scene.bodies.outlines, strict=True)]
+        [centroid + outline for centroid, outline in zip(scene.bodies.rest, scene.bodies.outlines, strict=True)]
     )
     low, high = corners.min(axis=0), corners.max(axis=0)
     return 0.5 * (low + high), 0.5 * float((high - low).max())

@@ -77,11 +77,11 @@ def warn_if_slow(scene: Scene) -> None:
     blocks = len(scene.bodies.names)
     if blocks <= ALWAYS_FITTED:
         return
-    explicit, (least, most) = explicit_seconds(scene), fitted_seconds(scene)
-    if MUCH_FASTER * explicit <= math.sqrt(least * most):
+    explicit, (fast, slow) = explicit_seconds(scene), fitted_seconds(scene)
+    if MUCH_FASTER * explicit <= math.sqrt(fast * slow):
         warn_of(
             f"explicit steps would take some {explicit:.2g} s for a simulated second of these {blocks} "
-            f"blocks, and steps that fit the motion in MuJoCo {least:.2g} to {most:.2g} s, the more the blocks slide "
+            f"blocks, and steps that fit the motion in MuJoCo {fast:.2g} to {slow:.2g} s, the more the blocks slide "
             "and strike: take mr.solve_explicit(case), or a timestep"
         )
 
@@ -141,9 +141,9 @@ def warn_if_sheared(scene: Scene) -> None:
     contacts = scene.contacts
     sprung = np.isfinite(contacts.k_s)
     if sprung.any():
-        least = (np.asarray(contacts.k_s) / contacts.area)[sprung].min()
+        k_s = (np.asarray(contacts.k_s) / contacts.area)[sprung].min()
         warn_of(
-            f"k_s = {least:.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick rigidly up to their "
+            f"k_s = {k_s:.3g} N/m3 is taken by solve_explicit alone; in MuJoCo the joints stick rigidly up to their "
             "friction"
         )
 

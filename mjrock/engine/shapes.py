@@ -111,10 +111,10 @@ def inertia_of_body(scene: Scene, j: int) -> dict[str, object]:
     moments = np.diagonal(scene.bodies.inertia[j])
     if not scene.bodies.products[j].any():
         return {"diaginertia": moments}
-    least = float(np.linalg.eigvalsh(scene.bodies.inertia[j])[0])
-    if least < LEAST_MOMENT:
+    smallest = float(np.linalg.eigvalsh(scene.bodies.inertia[j])[0])
+    if smallest < LEAST_MOMENT:
         raise ValueError(
-            f"{scene.bodies.names[j]} has a moment of inertia of {least:.3g} kg m2; MuJoCo takes those of at least "
+            f"{scene.bodies.names[j]} has a moment of inertia of {smallest:.3g} kg m2; MuJoCo takes those of at least "
             f"{LEAST_MOMENT:g} kg m2, and mr.solve_explicit any"
         )
     return {"fullinertia": np.concatenate([moments, scene.bodies.products[j]])}

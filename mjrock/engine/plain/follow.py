@@ -149,8 +149,8 @@ class PlainEngine:
         shaken = np.array([mean_acceleration(shaking, t, h) for shaking in (ground.x, ground.y, ground.z)])
         self.model.opt.gravity[:] = -shaken - (0.0, 0.0, GRAVITY)
         for i, support in enumerate(self.supports):
-            before, here, after = support.at(np.array([t - 0.5 * h, t, t + 0.5 * h]))
-            for axis, place, rate in zip(axes, here, (after - before) / h, strict=True):
+            before, places, after = support.at(np.array([t - 0.5 * h, t, t + 0.5 * h]))
+            for axis, place, rate in zip(axes, places, (after - before) / h, strict=True):
                 self.data.qpos[3 * i + axis], self.data.qvel[3 * i + axis] = place, rate
         return shaken[list(axes)]
 
@@ -172,7 +172,7 @@ class Work(NamedTuple):
 
     def plus(self, other: Work, share: float = 1.0) -> Work:
         """The sum of this work and a share of another one."""
-        return Work(*(own + share * added for own, added in zip(self, other, strict=True)))
+        return Work(*(part + share * added for part, added in zip(self, other, strict=True)))
 
 
 class Sample(NamedTuple):
@@ -261,8 +261,8 @@ def sums_by_pair(engine: PlainEngine, contacts: FoundContacts, values: Array) ->
 
 def work_of_step(engine: PlainEngine, contacts: FoundContacts, mean: Array, shaken: Array) -> Work:
     """Work in the step that was made, from mean velocities (nv,) and the acceleration of the ground (d,)."""
-    data, h, own = engine.data, float(engine.model.opt.timestep), slice(engine.driven)
-    ground = -h * float(shaken @ (engine.masses @ mean) + data.qfrc_constraint[own] @ mean[own])
+    data, h, driven = engine.data, float(engine.model.opt.timestep), slice(engine.driven)
+    ground = -h * float(shaken @ (engine.masses @ mean) + data.qfrc_constraint[driven] @ mean[driven])
     rates = np.zeros(data.nefc)
     if data.nefc:
         mujoco.mj_mulJacVec(engine.model, data, rates, mean)

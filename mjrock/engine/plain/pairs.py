@@ -58,8 +58,8 @@ class Pairs:
     def in_scene(cls, scene: Scene, pieces: list[Piece]) -> Pairs:
         """The pairs of pieces between which the scene has contacts."""
         contacts, bodies = scene.contacts, scene.bodies
-        both = np.sort(np.stack(_carriers(scene, pieces), axis=1), axis=1)
-        jointed, line, pair = np.unique(both, axis=0, return_index=True, return_inverse=True)
+        carriers = np.sort(np.stack(_carriers(scene, pieces), axis=1), axis=1)
+        jointed, line, pair = np.unique(carriers, axis=0, return_index=True, return_inverse=True)
         k, c, rubbing = (
             np.bincount(pair.ravel(), weights=values)
             for values in (contacts.k, contacts.c, contacts.friction * contacts.k)
@@ -119,7 +119,7 @@ def _pairs_without_joint(scene: Scene, pieces: list[Piece], jointed: Integers) -
     if scene.springs is not None and scene.springs.pairs is not None:
         names = [solid.name for solid in scene.rest_geometry.solids]
         neighbours = {frozenset((pieces[a].block, pieces[b].block)) for a, b in jointed.tolist()}
-        by_block = {name: [i for i, each in enumerate(pieces) if each.block == name and each.meets] for name in names}
+        by_block = {name: [i for i, part in enumerate(pieces) if part.block == name and part.meets] for name in names}
         for i, j in combinations(range(len(names)), 2):
             first, second = by_block[names[i]], by_block[names[j]]
             fixed = all(pieces[k].body == GROUND for k in (*first[:1], *second[:1]))
@@ -132,9 +132,9 @@ def _pairs_without_joint(scene: Scene, pieces: list[Piece], jointed: Integers) -
 
 def _carriers(scene: Scene, pieces: list[Piece]) -> tuple[Integers, Integers]:
     """The piece that carries each contact point, and the one whose face it meets, shape (m,) each."""
-    contacts, rest = scene.contacts, scene.bodies.rest
-    place = rest[contacts.body] + contacts.at
-    met = np.where((contacts.face_body == GROUND)[:, None], 0.0, rest[contacts.face_body])
+    contacts, centroids = scene.contacts, scene.bodies.rest
+    place = centroids[contacts.body] + contacts.at
+    met = np.where((contacts.face_body == GROUND)[:, None], 0.0, centroids[contacts.face_body])
     first = _nearest(pieces, contacts.body, contacts.at, -contacts.normal)
     return first, _nearest(pieces, contacts.face_body, place - met, contacts.normal)
 

@@ -106,7 +106,7 @@ def _pieces_of_solid(solid: Solid, scene: Scene) -> Iterator[Piece]:
     if is_stepped_stop(solid):
         corners = solid.corners
         foot = corners[corners[:, 2] == corners[:, 2].min(), 0].max()
-        yield from _filled(solid, np.minimum(corners, (foot, np.inf, np.inf)))
+        yield from _pieces_of_hull(solid, np.minimum(corners, (foot, np.inf, np.inf)))
         return
     for i, part in enumerate(parts):
         name = solid.name if i == 0 else f"{solid.name} part {i}"
@@ -118,11 +118,11 @@ def is_stepped_stop(solid: Solid) -> bool:
     return solid.name == "side" and not solid.sides and len(solid.drawn) > 1
 
 
-def _filled(solid: Solid, corners: Array) -> Iterator[Piece]:
+def _pieces_of_hull(solid: Solid, corners: Array) -> Iterator[Piece]:
     """A solid that meets others as the hull of corners. Where it has several parts, those are seen and meet nothing."""
     hull = hull_of(corners)
-    whole, simple = Convex(corners[list(hull.corners)], hull.faces, hull.normals), len(solid.drawn) == 1
-    yield Piece(solid.name, solid.name, solid.body, whole, is_seen=simple)
+    hull_solid, simple = Convex(corners[list(hull.corners)], hull.faces, hull.normals), len(solid.drawn) == 1
+    yield Piece(solid.name, solid.name, solid.body, hull_solid, is_seen=simple)
     if not simple:
         for i, part in enumerate(solid.drawn if solid.fixed else solid.parts):
             yield Piece(f"{solid.name} part {i}", solid.name, solid.body, part, meets=False)
@@ -138,10 +138,10 @@ def _pieces_of_wall(solid: Solid, scene: Scene) -> Iterator[Piece]:
     if inset > 1e-12 * np.abs(corners).max():  # edges that have been crushed are cut off
         edges = np.array([(x, y, low) for x in ends for y in (foot[:, 1].min(), foot[:, 1].max())])
         corners = np.concatenate([corners[corners[:, 2] > low], foot + np.array((0.0, 0.0, inset)), edges])
-    if any(is_stepped_stop(other) for other in scene.rest_geometry.solids):
+    if any(is_stepped_stop(solid_beside) for solid_beside in scene.rest_geometry.solids):
         top = corners[corners[:, 2] == corners[:, 2].max()]
         corners = np.concatenate([corners, np.minimum(top, (corners[:, 0].min(), np.inf, np.inf))])
-    yield from _filled(solid, corners)
+    yield from _pieces_of_hull(solid, corners)
 
 
 class Overlap(NamedTuple):
@@ -166,10 +166,10 @@ class Overlap(NamedTuple):
         planes = []
         for piece, place, turn in zip(self.pieces, self.place, self.turn, strict=True):
             normals = piece.shape.normals @ turn.T
-            own = np.column_stack([normals, -piece.shape.offsets - normals @ place])
-            planes.append(own[own[:, 2] > 0.5] if piece.is_ground else own)  # of the ground its top alone
-        least = min(piece.shape.bulk.volume for piece in self.pieces if not piece.is_ground)
-        return common_volume(np.concatenate(planes)) / least
+            sides = np.column_stack([normals, -piece.shape.offsets - normals @ place])
+            planes.append(sides[sides[:, 2] > 0.5] if piece.is_ground else sides)  # of the ground its top alone
+        smallest = min(piece.shape.bulk.volume for piece in self.pieces if not piece.is_ground)
+        return common_volume(np.concatenate(planes)) / smallest
 
 
 def common_volume(planes: Array) -> float:

@@ -79,8 +79,8 @@ class PlainModel:
         pose, supports = self.course.pose.copy(), self.problem.case.supports
         if self.scene.freedom != PLANE:
             pose[:, :3] += self.scene.bodies.rest
-        still = np.zeros(3 * len(supports))
-        return np.append(still, pose), np.append(still, self.course.velocity)
+        standstill = np.zeros(3 * len(supports))
+        return np.append(standstill, pose), np.append(standstill, self.course.velocity)
 
     def text(self, timestep: float, keyframe: Keyframe | None = None) -> str:
         """The model text at a step [s]; without a keyframe its velocities are those of the release."""

@@ -120,7 +120,7 @@ def plain_text(
         "  " + element("camera", name="front", **camera_of(scene, middle, half), fovy="28"),
         *(f"  {line}" for line in _world(scene, pieces, moved)),
         "</worldbody>",
-        *section("contact", (f"  {line}" for line in [*_pairs(pieces, pairs, laws), *_apart(moved)])),
+        *section("contact", (f"  {line}" for line in [*_pairs(pieces, pairs, laws), *_exclusions(moved)])),
         *section("tendon", link_elements(scene)),
         *section("actuator", force_elements(scene)),
         *section("keyframe", iter(["  " + tag("key", name="release", **keyframe.values)])),
@@ -178,7 +178,7 @@ def _defaults(
             yield f'<default class="{name}">{element("joint", type=kind, axis=axis)}</default>'
     classes = _class_of(laws)
     for name in dict.fromkeys(classes.values()):
-        i = next(i for i, each in classes.items() if each == name)
+        i = next(i for i, class_name in classes.items() if class_name == name)
         yield f"<!-- {_comment(pairs, i)} -->"
         yield f'<default class="{name}">{element("pair", **laws[i])}</default>'
 
@@ -200,11 +200,11 @@ def _pairs(pieces: list[Piece], pairs: Pairs, laws: list[dict[str, object]]) -> 
             yield element("pair", **names, **laws[i])
 
 
-def _apart(moved: tuple[str, ...]) -> Iterator[str]:
+def _exclusions(moved: tuple[str, ...]) -> Iterator[str]:
     """Fixed geoms do not collide with blocks that are moved."""
     for i, name in enumerate(moved):
-        for other in ("world", *moved[:i]):
-            yield element("exclude", body1=other, body2=name)
+        for apart_from in ("world", *moved[:i]):
+            yield element("exclude", body1=apart_from, body2=name)
 
 
 def _world(scene: Scene, pieces: list[Piece], moved: tuple[str, ...]) -> Iterator[str]:
@@ -216,7 +216,9 @@ def _world(scene: Scene, pieces: list[Piece], moved: tuple[str, ...]) -> Iterato
     for name in moved:
         yield element("body", name=name, gravcomp="1").removesuffix("/>") + ">"
         yield "  " + element("inertial", pos=(0, 0, 0), mass=SUPPORT_MASS, diaginertia=np.full(3, SUPPORT_MASS))
-        yield "  " + "".join(element("joint", name=f"{name}_{axis}", type="slide", axis=way) for axis, _, way in BALL)
+        yield "  " + "".join(
+            element("joint", name=f"{name}_{axis}", type="slide", axis=along) for axis, _, along in BALL
+        )
         yield from (f"  {_geom(piece, rgba=PLASTER)}" for piece in pieces if piece.block == name)
         yield "</body>"
     for j, (name, tint) in enumerate(zip(scene.bodies.names, tints(scene), strict=True)):
@@ -239,7 +241,7 @@ def _geom(piece: Piece, **attributes: object) -> str:
     return element("geom", type="mesh", mesh=piece.name, **attributes)
 
 
-def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, object]) -> Iterator[str]:
+def _body(scene: Scene, j: int, name: str, pieces: list[Piece], tint: dict[str, object]) -> Iterator[str]:
     """A body with its joints and its geoms. A uniform box is given its mass, any other body its moments of inertia."""
     alone = len(scene.bodies.names) == 1
     opening = element("body", name=name, pos=in_space(scene.bodies.rest[j]))
@@ -247,23 +249,23 @@ def _body(scene: Scene, j: int, name: str, own: list[Piece], tint: dict[str, obj
     if scene.freedom != PLANE:
         yield "  " + element("freejoint", name="free" if alone else f"{name}_free")
     elif alone:
-        yield from ("  " + element("joint", name=axis, type=kind, axis=way) for axis, kind, way in HINGE)
+        yield from ("  " + element("joint", name=axis, type=kind, axis=along) for axis, kind, along in HINGE)
     else:
         yield "  " + "".join(tag("joint", **{"class": axis}, name=f"{name}_{axis}") for axis, _, _ in HINGE)
     weight: dict[str, object] = {"mass": scene.bodies.mass[j]}
-    if not _is_uniform_box(scene, j, own):
+    if not _is_uniform_box(scene, j, pieces):
         yield "  " + element("inertial", pos=(0, 0, 0), mass=scene.bodies.mass[j], **inertia_of_body(scene, j))
         weight = {}
-    for piece in own:
+    for piece in pieces:
         yield "  " + _geom(piece, **weight, **tint)
     yield from (f"  {site}" for site in sites(scene, j))
     yield "</body>"
 
 
-def _is_uniform_box(scene: Scene, j: int, own: list[Piece]) -> bool:
+def _is_uniform_box(scene: Scene, j: int, pieces: list[Piece]) -> bool:
     """Whether a body is one box about its centroid whose moments of inertia are those of an even density."""
-    box = own[0].shape.box
-    if len(own) > 1 or box is None or np.abs(box[0]).max() > 1e-12 * box[1].max():
+    box = pieces[0].shape.box
+    if len(pieces) > 1 or box is None or np.abs(box[0]).max() > 1e-12 * box[1].max():
         return False
     square = box[1] ** 2
     even = scene.bodies.mass[j] / 3 * (square.sum() - square)
