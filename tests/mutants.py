@@ -164,7 +164,7 @@ SWAPPED = {
 }
 """Operators, as they are written and what takes their place."""
 EQUIVALENT = {
-    "energy_work.py: work.dashpots[n, joint[i]] += now.dashpot * opened if now.law > 1 else released": (
+    "energy_work.py: work.dashpots[n, joint[i]] += contact.dashpot * opened if contact.law > 1 else released": (
         "a row that presses with less than a newton takes nothing that shows"
     ),
     "joint_law.py: force[i], energy[i] = normal_force(law[i], gap[i], 1), stored(law[i], gap[i])": (
@@ -189,7 +189,7 @@ EQUIVALENT = {
         "joints on what is fixed have no arm that is read"
     ),
     "rows.py: if points.friction_inertia[i] > 1:": "the inertia held is a thousand masses of a body, or zero",
-    "forces.py: if not kinds.released_on[i] if n == 0 else now.gap > 0:": "at a gap of zero nothing presses",
+    "forces.py: if not kinds.released_on[i] if n == 0 else contact.gap > 0:": "at a gap of zero nothing presses",
     **{
         "compound.py: reaching = [part for part in self.polygons if np.ptp(np.clip(part.corners[:, 1] - z, "
         f"{bounds})) > 0]": "what reaches a height to a nanometre does to two"
@@ -226,9 +226,8 @@ EQUIVALENT = {
             "if half <= SERIES_ANGLE:",
         )
     },
-    "handover.py: if square - deep * deep < bound and sense / old_place.sense * dot(normal, old_place.normal) > SAME_NORMAL:": (
-        "a sense is 1 or -1"
-    ),
+    "handover.py: if square - deep * deep < bound and sense / old_place.sense * "
+    "dot(normal, old_place.normal) > SAME_NORMAL:": "a sense is 1 or -1",
     "pair_law.py: per_area = per_area * np.append(length / of_joint / np.ones(4), "
     "np.ones_like(length), 1)": "one multiplies and divides alike",
     "pair_law.py: least_shares = np.ones(len(known) + 2)": "the last of them is read, and all are one",
@@ -282,7 +281,9 @@ EQUIVALENT = {
         f"clipping.py: {line}": "what is no corner lies on one edge alone"
         for line in ("if distance <= from_edge:", "if distance <= from_crossed:")
     },
-    "clipping.py: distance = distance_from(off, scaled(1, edge_below), edge_below)": "both ends of an edge lie on its line",
+    "clipping.py: distance = distance_from(off, scaled(1, edge_below), edge_below)": (
+        "both ends of an edge lie on its line"
+    ),
     "clipping.py: faces = face, face_towards(solids, blocks[1], scaled(-2.0, normal_of(solids, face)))": (
         "a direction may have any length"
     ),
