@@ -1,4 +1,4 @@
-"""Commands: how their arguments are read, what they answer, and which files they may write."""
+"""Commands: reading of their arguments, their answers, and the files that they may write."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The plan of the form, made from the schema of the file alone, and the input of the form as tables of the file.
+"""The plan of the form, from the schema of the file alone, and the input of the form as tables of the file.
 
 The input is what a person has typed: nested dictionaries and lists of the shape of the file, whose values are texts. A
 text becomes a number, a truth or a list where its field takes one; any other stays, for the reader of the file to

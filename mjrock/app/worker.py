@@ -1,4 +1,4 @@
-"""Processes that do the work of the form, a task at a time. One whose answer nobody waits for is killed."""
+"""Processes that do the work of the form, a task at a time. A process without a waiting client is killed."""
 
 from __future__ import annotations
 

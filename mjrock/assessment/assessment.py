@@ -1,4 +1,4 @@
-"""An assessment: mechanisms, what they are checked against, and what a report says of them, as one file has them."""
+"""An assessment: mechanisms, the demand of their checks, and the content of a report, as in one file."""
 
 from __future__ import annotations
 

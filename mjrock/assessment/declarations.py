@@ -1,4 +1,4 @@
-"""The keys of a table: the arguments of what it stands for, with the ranges that its signature declares."""
+"""The keys of a table: the arguments of its public object, with the ranges that the signature declares."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Objects as the plain tables that a file has of them: the way back of `reading`."""
+"""Objects as the plain tables of a file: the inverse of `reading`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mechanisms of a file, and what each is checked against."""
+"""The mechanisms of a file, and the demand of each check."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of a file as the objects that they stand for."""
+"""Tables of a file as the objects that they describe."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Records and runs of an assessment: what shakes a mechanism, by which solver, and what its impacts lose."""
+"""Records and runs of an assessment: the motion of a mechanism, its solver, and the restitution of its impacts."""
 
 from __future__ import annotations
 

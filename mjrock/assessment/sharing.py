@@ -1,4 +1,4 @@
-"""A JSON schema in which equal parts stand once, so that it is short enough for editors."""
+"""A JSON schema that defines equal parts once, so that it is short enough for editors."""
 
 from __future__ import annotations
 

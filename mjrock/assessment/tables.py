@@ -1,4 +1,4 @@
-"""TOML text as tables that know where each key stands."""
+"""TOML text as tables with the line of each key."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files to begin with, which can be checked as they are, with what each key means, made from the schema of files."""
+"""Complete files to begin with, with the meaning of each key from the schema of files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`mjrock new`: a file of a mechanism that runs as it is, with what each key means."""
+"""`mjrock new`: a complete file of a mechanism, with the meaning of each key."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`mjrock schema`: what the file of an assessment may have, for editors that complete and check it."""
+"""`mjrock schema`: the keys of the file of an assessment, for editors that complete and check it."""
 
 from __future__ import annotations
 

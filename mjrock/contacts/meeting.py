@@ -1,4 +1,4 @@
-"""The contact of two geoms in a pose: in how many points they meet, and the mass that each of them stops."""
+"""The contact of two geoms in a pose: the number of contact points, and the mass that each point stops."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reasons for which a contact differs from the requested values: options of the model, the step, what was not written.
+"""Reasons for which a contact differs from the requested values: options of the model, the step, unwritten numbers.
 
 Each function gives sentences. Those on a `PairContact` stand in its module: `remaining_caveats`, which `apply` leaves,
 and `missing`, which it mends.

@@ -1,4 +1,4 @@
-"""What MuJoCo has in its version, 3.3.2 or newer. A flag or a field that a version lacks is one that is not set.
+"""Features of the MuJoCo version, 3.3.2 or newer. A flag or a field that a version lacks counts as not set.
 
 * Before 3.3.3 `mj_crb` makes the mass matrix; `mj_makeM` does so since.
 * Before 3.4 two boxes are found half as deep as they are.

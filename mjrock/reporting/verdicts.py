@@ -1,4 +1,4 @@
-"""What a report answers: the verdicts of the checks, their steps clause by clause, and what governs."""
+"""The answers of a report: the verdicts of the checks, their steps clause by clause, and the governing condition."""
 
 from __future__ import annotations
 

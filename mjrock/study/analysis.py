@@ -1,4 +1,4 @@
-"""One case for one solver, as a task of a campaign: what is run, and the columns of its row."""
+"""One case for one solver, as a task of a campaign: the run, and the columns of its row."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much an answer changes with settings that are not known: one at a time, and all of them together."""
+"""The change of an answer with uncertain settings: one at a time, and all together."""
 
 from __future__ import annotations
 

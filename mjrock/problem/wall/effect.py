@@ -1,4 +1,4 @@
-"""What every effect says of itself, so that nobody has to ask which kind it is.
+"""The interface of all effects, so that solvers need not distinguish their kinds.
 
 An effect has a link, a constant force or a mass, or several of them. A scene, the solvers, pictures and reports take
 these, and a new effect is a class of its own with one entry in `mjrock.problem.wall.effects.EFFECT_KINDS`.

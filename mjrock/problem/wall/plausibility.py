@@ -1,4 +1,4 @@
-"""What is odd about a case: values that can be, and that are most often in another unit. One sentence each."""
+"""Unusual values of a case: they are possible, but most often in another unit. One sentence each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The resumable store of a campaign: an SQLite file with one row a case, keyed by what the case is."""
+"""The resumable store of a campaign: an SQLite file with one row a case, keyed by the content of the case."""
 
 from __future__ import annotations
 

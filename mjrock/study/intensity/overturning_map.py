@@ -1,4 +1,4 @@
-"""The map of overturning: what a wall or masonry does under pulses of every amplitude and period of a grid."""
+"""The map of overturning: the outcome for a wall or masonry under pulses of every amplitude and period of a grid."""
 
 from __future__ import annotations
 

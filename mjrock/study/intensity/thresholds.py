@@ -1,4 +1,4 @@
-"""All ranges of intensity in which a wall or masonry falls: a scan, the edges that it finds, and how sure they are."""
+"""All ranges of intensity in which a wall or masonry falls: a scan, the edges that it finds, and their certainty."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A code for the check of local mechanisms: its limit states, its clauses and its texts, which one file has.
+"""A code for the check of local mechanisms: its limit states, its clauses and its texts, in one file.
 
 The check asks the code for every number, and the report for every clause and text. A further code is a further file in
 the folder of those that come with the package, or a file of your own, see `Code.load` and docs/own_code.md.

@@ -1,4 +1,4 @@
-"""What a check demands: the displacement and the acceleration of a record or a spectrum, for each limit state."""
+"""The demand of a check: the displacement and the acceleration of a record or a spectrum, for each limit state."""
 
 from __future__ import annotations
 

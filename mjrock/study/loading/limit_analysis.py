@@ -1,4 +1,4 @@
-"""The push that rigid masonry bears by limit analysis, at rest and in the poses through which its mechanism goes."""
+"""The collapse load of rigid masonry by limit analysis, at rest and in the poses of its mechanism."""
 
 from __future__ import annotations
 

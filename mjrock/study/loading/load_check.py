@@ -1,4 +1,4 @@
-"""The verdict of a static answer: what masonry or a wall bears, beside what is demanded of it."""
+"""The verdict of a static answer: the resistance of masonry or a wall against the demand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The part of masonry that moves in a mechanism: its weights, how far they go, and the virtual work."""
+"""The part of masonry that moves in a mechanism: its weights, their displacements, and the virtual work."""
 
 from __future__ import annotations
 

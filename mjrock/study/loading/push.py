@@ -1,4 +1,4 @@
-"""Slow loading: masonry pushed by an actuator or by a horizontal force that grows, with what it bears after its peak.
+"""Slow loading: masonry pushed by an actuator or by a growing horizontal force, with its softening branch.
 
 The load goes on in pieces, each of which carries on the steps of the one before. A piece in which the forces of inertia
 are above the share that is allowed is made again at half the rate, and after one far below it the rate doubles.

@@ -1,4 +1,4 @@
-"""The bond of a mortared joint: what it holds in tension, along the face and in crushing, and what breaking takes."""
+"""The bond of a mortared joint: its strength in tension, along the face and in crushing, and its fracture energies."""
 
 from __future__ import annotations
 

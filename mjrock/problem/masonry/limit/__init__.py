@@ -1,1 +1,1 @@
-"""Limit analysis of rigid masonry: whether it stands, and the push that it bears."""
+"""Limit analysis of rigid masonry: its stability, and its collapse load."""

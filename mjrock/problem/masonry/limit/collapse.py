@@ -1,4 +1,4 @@
-"""The push that rigid masonry bears, by limit analysis, its mechanism, and the forces of joints at rest."""
+"""The collapse load of rigid masonry by limit analysis, its mechanism, and the forces of joints at rest."""
 
 from __future__ import annotations
 
