@@ -15,18 +15,18 @@ from typing import Any
 from .background_compilation import Run
 
 ALLOWANCE = {"RLIMIT_CPU": 120, "RLIMIT_AS": 4 << 30, "RLIMIT_CORE": 0}
-"""What this process may use: time of a core [s], address space [bytes], a file of its memory [bytes]."""
+"""What this process may use: processor time [s], address space [bytes], size of a core dump [bytes]."""
 
 
-def serve(left: float) -> None:
+def serve(grace_period: float) -> None:
     """Make the runs that standard input brings, with low priority, and store their loops.
 
     Args:
-        left: time to go on when standard input has ended [s].
+        grace_period: time to go on when standard input has ended [s].
     """
     limit()
     runs: SimpleQueue[bytes | None] = SimpleQueue()
-    threading.Thread(target=_listen, args=(runs, left), daemon=True).start()
+    threading.Thread(target=_listen, args=(runs, grace_period), daemon=True).start()
     warnings.simplefilter("ignore")
     lock = lock_of_store()
     content = None if lock is None else runs.get()
@@ -67,10 +67,10 @@ def lock_of_store() -> Any:
     return None
 
 
-def _listen(runs: SimpleQueue[bytes | None], left: float) -> None:
+def _listen(runs: SimpleQueue[bytes | None], grace_period: float) -> None:
     with contextlib.suppress(Exception):
         while True:
             runs.put(pickle.load(sys.stdin.buffer))
     runs.put(None)
-    time.sleep(left)
+    time.sleep(grace_period)
     os._exit(1)

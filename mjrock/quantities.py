@@ -108,21 +108,23 @@ def takes(value: object, count: int) -> bool:
     return True
 
 
-def require_sequence(name: str, value: object, takes: str) -> None:
+def require_sequence(name: str, value: object, expected: str) -> None:
     """Check a sequence.
 
     Args:
         name: what it is called.
         value: the sequence.
-        takes: what it should be, in words.
+        expected: what it should be, in words.
 
     Raises:
         TypeError: unless it is a sequence and no text, with as many values as its length, at most MOST_LISTED.
     """
     if not isinstance(value, Sequence) or isinstance(value, str):
-        raise TypeError(f"{name} = {shown(value)} is not {takes}")
+        raise TypeError(f"{name} = {shown(value)} is not {expected}")
     if len(listed(name, value)) != len(value):
-        raise TypeError(f"{name} = {shown(value)} is not {takes}: its length is {len(value)}, and it has other values")
+        raise TypeError(
+            f"{name} = {shown(value)} is not {expected}: its length is {len(value)}, and it has other values"
+        )
 
 
 def require_path(name: str, path: object) -> Path:

@@ -69,7 +69,7 @@ class Maker:
     """What a table stands for: a class, one of its further constructors, or a function.
 
     Args:
-        call: it.
+        call: the class, constructor or function, which takes the keys as arguments.
         keys: of the table, by name.
         doc: the first line of its docstring.
     """

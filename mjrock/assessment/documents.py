@@ -101,7 +101,7 @@ def file_value(value: object, kinds: Sequence[Hint], place: Place) -> object:
         item_kinds = [kind for hint in hints for kind in kinds_of(hint)]
         return [file_value(item, item_kinds, (*place, i)) for i, item in enumerate(items)]
     reason = "is a function" if callable(value) else f"= {shown(value)} is no number, text or table"
-    raise UnwrittenError(place, f"{reason}, for which a file has no words; give a number")
+    raise UnwrittenError(place, f"{reason}, for which a file has no words; give a number, a text or a table")
 
 
 def _is_default(value: object, default: object) -> bool:

@@ -39,7 +39,7 @@ FIRST_WORD = re.compile(r"(\w+)(?:\[(\d+)\])?")
 
 
 class RefusedError(Exception):
-    """A value that is refused: its fault is with the reader."""
+    """Raised where a value is refused. The reader has its message already."""
 
 
 class Reader:

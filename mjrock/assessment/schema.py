@@ -61,6 +61,9 @@ def _written_once() -> Schema:
 class SchemaWriter:
     """Writes the schema, each class once.
 
+    A definition whose name has a `?` is partial: its mechanism may share keys with others. With a `!` it needs no
+    `kind`.
+
     Attributes:
         parts: the definitions.
     """
@@ -110,9 +113,9 @@ class SchemaWriter:
             table = self._table(makers[""], partial=partial)
             if partial and "effects" in table["properties"]:
                 table["properties"]["effects"] = _or_taken_away(table["properties"]["effects"])
-            named = {"kind": {"const": kind, "default": "Case"}} if kind == "Case" else {"kind": {"const": kind}}
+            kind_key = {"kind": {"const": kind, "default": "Case"}} if kind == "Case" else {"kind": {"const": kind}}
             needed = [] if partial or kind == "Case" else ["kind"]
-            table["properties"] = named | table["properties"] | sections | once
+            table["properties"] = kind_key | table["properties"] | sections | once
             table["required"] = needed + table.pop("required", [])
             kinds.append(table)
         if not partial:

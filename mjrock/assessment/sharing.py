@@ -49,8 +49,8 @@ def shared(whole: Schema) -> Schema:
 
 
 def _beyond_free(tables: Schema, name: str) -> Schema:
-    """A definition; where there is the same table with no key that it needs, of a mechanism that shares keys with
-    others, as what it requires beyond that one."""
+    """A definition. Where there is a partial one with the same keys, whose name has a `?`, it refers to that one and
+    adds the keys that it requires."""
     table: Schema = tables[name]
     free = f"{name.rstrip('?!')}?{'' if name.startswith('[') else '!'}"
     keys, own_keys = tables.get(free, {}).get("properties", {}), table.get("properties", {})

@@ -56,7 +56,7 @@ def example_named(name: str) -> Example:
 
 
 def cells_of(text: str) -> Iterator[str]:
-    """The cells of a script, each below as many empty lines as stand before it, for the numbers of its lines."""
+    """The cells of a script. Empty lines before each keep the numbers of its lines, which a traceback names."""
     before = 0
     for cell in text.split(CELL):
         yield "\n" * before + cell

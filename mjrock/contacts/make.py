@@ -84,8 +84,9 @@ def contact_for(
         k_face: stiffness of all contact points together [N/m]: those that share the mass have equal parts of it.
         k_n: stiffness of the face in which the two geoms meet [N/m3], that of the polygon of their contact points.
         depth: how deep the geoms are pressed into each other at rest [m], under `load`.
-        load: static load on all contact points together [N]. None is that of gravity and of the actuators, at the
-            `ctrl` of the keyframe, in the pose at rest; where the geoms are apart, the weight of the lighter one.
+        load: static load on all contact points together [N], not of each as `PairContact.load`. None is that of gravity
+            and of the actuators, at the `ctrl` of the keyframe, in the pose at rest; where the geoms are apart, the
+            weight of the lighter one.
         c: dashpot of each contact point [N s/m], not negative.
         restitution: e of an approach along the normal, within [0, 1] [-]. e below 0.001 is taken as 0.001, because an
             infinite dashpot would be needed for 0. Without `speed` it leaves out gravity.
@@ -448,8 +449,8 @@ def with_neighbours(
     remarks = []
     if unlike:
         remarks.append(
-            f"it lands together with {named(unlike)}, and shares the mass; give them the same contact, or contacts= "
-            "to this one for the mass at its own points"
+            f"it lands together with {named(unlike)}, and shares the mass; give them the same contact, or give this "
+            "one contacts=, the number of its own points, if it does not share the mass"
         )
     if neighbours.late > 0:
         remarks.append(

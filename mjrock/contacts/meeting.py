@@ -69,24 +69,24 @@ class LandingTrial:
         about `away` [degrees]; shape (n, 3)."""
         bodies, geoms = list(pair.bodies), list(pair.geoms)
         self._let_meet(geoms, bodies, 1)
-        moves = 1 if self.model.geom_type[geoms[0]] in BOUNDLESS else 0
-        place, frame = (np.array(values[geoms[moves]]) for values in (self.data.geom_xpos, self.data.geom_xmat))
+        moved = 1 if self.model.geom_type[geoms[0]] in BOUNDLESS else 0
+        place, frame = (np.array(values[geoms[moved]]) for values in (self.data.geom_xpos, self.data.geom_xmat))
         shift = (distance + self.pressed(pair)) * away
         if turn:
             turned, matrix = np.zeros(4), np.zeros(9)
             mujoco.mju_axisAngle2Quat(turned, away, np.radians(turn))
             mujoco.mju_quat2Mat(matrix, turned)
-            self.data.geom_xmat[geoms[moves]] = (matrix.reshape(3, 3) @ frame.reshape(3, 3)).ravel()
-        self.data.geom_xpos[geoms[moves]] += shift if moves else -shift
+            self.data.geom_xmat[geoms[moved]] = (matrix.reshape(3, 3) @ frame.reshape(3, 3)).ravel()
+        self.data.geom_xpos[geoms[moved]] += shift if moved else -shift
         try:
             mujoco.mj_collision(self.model, self.data)
             contact = self.data.contact
             met = contact.pos[(np.sort(contact.geom, axis=1) == sorted(geoms)).all(axis=1)]
         finally:
-            self.data.geom_xpos[geoms[moves]], self.data.geom_xmat[geoms[moves]] = place, frame
+            self.data.geom_xpos[geoms[moved]], self.data.geom_xmat[geoms[moved]] = place, frame
             self._let_meet(geoms, bodies, 0)
         points = met[:: max(1, len(pair.listed))]
-        return points + shift if moves == 0 else points
+        return points + shift if moved == 0 else points
 
     def drop(self, pair: GeomPair, away: Array) -> Landing | None:
         """Where the first geom lands as it moves against `away`; if it passes the second, over the middle of that.
@@ -286,14 +286,14 @@ class Pose:
     def _landing_of(self, pair: GeomPair) -> Landing:
         """Where two geoms meet: along the normal that is given, that of a plane, the axis of a height field, or the
         shortest line."""
-        ground = self.ground if pair.makes_several_points or self.normal is not None else None
+        trial = self.landing_trial if pair.makes_several_points or self.normal is not None else None
         along = pair.axis(self.data, mujoco.mjtGeom.mjGEOM_HFIELD) if self.normal is None else self.normal
-        if along is not None and ground is not None and (landing := ground.drop(pair, along)):
+        if along is not None and trial is not None and (landing := trial.drop(pair, along)):
             return landing
         away, distance, ends = pair.separation(self.data)
         away = away if along is None else along
-        if ground is not None:
-            points = ground.points(pair, away, distance)
+        if trial is not None:
+            points = trial.points(pair, away, distance)
             if len(points):
                 return Landing(away, distance, points, points - distance * away)
         first, second = [pair.centre(self.data, body) for body in pair.bodies] if ends is None else ends
@@ -337,8 +337,8 @@ class Pose:
         return max(NO_LOAD, carried) / (contacts or len(forces))
 
     @cached_property
-    def ground(self) -> LandingTrial:
-        """A copy of the model in which geoms are moved together."""
+    def landing_trial(self) -> LandingTrial:
+        """A copy of the model in which geoms are moved together until they meet."""
         return LandingTrial(self.model, self.data)
 
     @cached_property

@@ -223,7 +223,7 @@ def turn_caveats(pair: GeomPair, pose: Pose, k: float) -> Iterator[str]:
     landing = pose.landing(pair)
     if not pair.has_two_faces or not pair.can_turn(pose.data, landing.away):
         return
-    before, after = len(landing.first), len(pose.ground.points(pair, landing.away, landing.distance, SMALL_TURN))
+    before, after = len(landing.first), len(pose.landing_trial.points(pair, landing.away, landing.distance, SMALL_TURN))
     if after > before:
         yield (
             f"a turn of {SMALL_TURN:g} degrees about the normal gives the two faces {after} points for {before}: the "
@@ -250,10 +250,10 @@ def shape_caveats(pair: GeomPair, pose: Pose) -> Iterator[str]:
             "take a newer MuJoCo"
         )
     if len(landing.first) == 1 and pair.makes_several_points and not has_several_points(model.opt):
-        option = pose.ground.model.opt
+        option = pose.landing_trial.model.opt
         flags = option.disableflags, option.enableflags
         give_several_points(option)
-        several = len(pose.ground.points(pair, landing.away, landing.distance))
+        several = len(pose.landing_trial.points(pair, landing.away, landing.distance))
         option.disableflags, option.enableflags = flags
         if several > 1:
             yield (
@@ -301,7 +301,7 @@ def _spring_caveats(pose: Pose, effective: EffectiveMass, k: float, xi: float, s
     added = float(stiffness.sum())
     if abs(added) > NOTABLE_STIFFNESS * k:
         yield (
-            f"{_names(pose, stiffness)} {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
+            f"{_owners_and_verb(pose, stiffness)} {added:.3g} N/m to the {k:.3g} N/m of the contact along the "
             "approach, which changes its restitution"
         )
     omega = math.sqrt(k / mass)
@@ -313,17 +313,17 @@ def _spring_caveats(pose: Pose, effective: EffectiveMass, k: float, xi: float, s
     notable = NOTABLE_LOSS if damped + rubbed <= NOTABLE_LOSS else 0.25 * NOTABLE_LOSS
     if damped > notable:
         yield (
-            f"{_names(pose, damping)} a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
+            f"{_owners_and_verb(pose, damping)} a damping ratio of {ratio:.2g} to the {xi:.2g} of the contact "
             "along the approach, which lowers its restitution"
         )
     if rubbed > notable:
         yield (
-            f"{_names(pose, friction)} a dry friction of {friction.sum():.3g} N along the approach, which "
+            f"{_owners_and_verb(pose, friction)} a dry friction of {friction.sum():.3g} N along the approach, which "
             f"lowers e = {e:.3g} by up to {rubbed:.2g} at {speed:g} m/s, and by more at a lower speed"
         )
 
 
-def _names(pose: Pose, shares: Array) -> str:
+def _owners_and_verb(pose: Pose, shares: Array) -> str:
     """The owners of the largest shares of a sum, the largest first, and the verb."""
     shares = np.abs(shares)
     order = np.argsort(-shares, kind="stable")
@@ -332,8 +332,9 @@ def _names(pose: Pose, shares: Array) -> str:
 
 
 def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, number: int) -> str:
-    words = {JOINT: "joint", TENDON: "tendon", ACTUATOR: "actuator", CONSTRAINT: ""}[kind]
-    return f"{words} {mujoco.mj_id2name(model, kind, number) or f'[{number}]'!s}".strip()
+    """An element of the model by kind and name, or by its number where it has no name."""
+    label = {JOINT: "joint", TENDON: "tendon", ACTUATOR: "actuator", CONSTRAINT: ""}[kind]
+    return f"{label} {mujoco.mj_id2name(model, kind, number) or f'[{number}]'!s}".strip()
 
 
 def yielding_joints(

@@ -29,24 +29,25 @@ STEPS = 40
 """Steps of a trial of the solver from each of its two starts."""
 MOVING = 0.3
 """Largest speed of a joint at the start of a trial [m/s or rad/s]."""
-OTHER_FORCES = 0.01
-"""Change of the forces, as a share of the largest, from which they are others [-]."""
+TOLERANCE_OF_FORCES = 0.01
+"""Largest difference of forces that count as equal, over the largest force [-]."""
 LARGEST_ACCELERATION = 1e10
 """Acceleration beyond which a trial ends [m/s2 or rad/s2], that of MuJoCo's own check."""
 POSITION = int(mujoco.mjtStage.mjSTAGE_POS)
 
 
-Landed = tuple[PairContact, Landing]
+ContactLanding = tuple[PairContact, Landing]
 """A contact, and where its geoms meet."""
 
 
-def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
+def solver_need(pose: Pose, landed: Sequence[ContactLanding]) -> SolverNeed:
     """The iterations that contacts need of the solver of their model, by a trial in a pose.
 
     Where it does not converge, a tenth of the impratio is tried, and so on until half of the iterations are enough.
     """
     trial = SolverTrial(pose, landed)
-    given, cap, searches = trial.own, max(trial.own[0], MOST_ITERATIONS), max(trial.own[1], LINE_SEARCHES)
+    given = trial.iterations, trial.line_searches
+    cap, searches = max(trial.iterations, MOST_ITERATIONS), max(trial.line_searches, LINE_SEARCHES)
     try:
         result = trial.run(cap, searches)
     except mujoco.FatalError:  # the memory of the model is too small for the contacts
@@ -54,7 +55,7 @@ def solver_need(pose: Pose, landed: Sequence[Landed]) -> SolverNeed:
     if not result.carried:
         return SolverNeed(*given, tried=False)
     if result.most < cap:
-        return SolverNeed(*given) if result.enough else SolverNeed(max(2 * result.most, given[0]), searches)
+        return SolverNeed(*given) if result.enough else SolverNeed(max(2 * result.most, trial.iterations), searches)
     option = trial.model.opt
     full = float(option.impratio) if trial.contacts.has_friction else 1.0
     for power in range(math.ceil(math.log10(full)) - 1, -1, -1):
@@ -114,14 +115,14 @@ class SolverTrial:
     Attributes:
         model: the copy, with the options that the contacts need.
         contacts: the contacts that are tried.
-        own: iterations and line searches of the model.
+        iterations, line_searches: the most that the model allows.
     """
 
-    def __init__(self, pose: Pose, landed: Sequence[Landed]) -> None:
+    def __init__(self, pose: Pose, landed: Sequence[ContactLanding]) -> None:
         self.pose, self.model = pose, copy.copy(pose.model)
         self.contacts = contacts = PairContacts(tuple(contact for contact, _ in landed))
         option = self.model.opt
-        self.own = int(option.iterations), int(option.ls_iterations)
+        self.iterations, self.line_searches = int(option.iterations), int(option.ls_iterations)
         option.timestep = contacts.contacts[0].timestep
         if contacts.has_friction:
             option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
@@ -139,7 +140,7 @@ class SolverTrial:
                 data.qvel[:] = speed * np.cos(np.arange(self.model.nv))
                 for _ in range(STEPS):
                     self._find_contacts(data)
-                    fewer = self._forces(data, *self.own)
+                    fewer = self._forces(data, self.iterations, self.line_searches)
                     turns, exact = self._exact_solution(data, cap, searches)
                     if not np.abs(data.qacc).max(initial=0) < LARGEST_ACCELERATION:
                         break
@@ -194,7 +195,7 @@ class SolverTrial:
         return bool(np.any(data.efc_force[rows[rows >= 0]] > 0))
 
 
-def _contacts_that_meet(model: mujoco.MjModel, landed: Sequence[Landed]) -> Iterator[Landed]:
+def _contacts_that_meet(model: mujoco.MjModel, landed: Sequence[ContactLanding]) -> Iterator[ContactLanding]:
     """The contacts that act together: those of geoms that touch, and of each geom that moves the nearest one."""
     nearest: dict[int, float] = {}
     for contact, landing in landed:
@@ -227,6 +228,6 @@ def _points(pose: Pose, contact: PairContact, landing: Landing) -> Iterator[Pres
 
 
 def _are_equal(one: Array, other: Array) -> bool:
-    """Whether the forces of two solutions of one state are equal to OTHER_FORCES."""
+    """Whether the forces of two solutions of one state are equal to TOLERANCE_OF_FORCES."""
     largest = np.abs(other).max(initial=0)
-    return bool(np.abs(one - other).max(initial=0) <= OTHER_FORCES * largest)
+    return bool(np.abs(one - other).max(initial=0) <= TOLERANCE_OF_FORCES * largest)

@@ -34,7 +34,7 @@ RECAUGHT_LOAD = 1e-3
 With a gap between the two, a hardly loaded edge is caught and released at a finite rate. The ideal law would do both at
 once."""
 MOST_SWITCHES = 100_000
-"""Most changes between a held and a free base in one run, which ends an endless loop."""
+"""Most changes between sticking and slipping in one run, of the base and of all friction dampers. More are an error."""
 
 
 @within_ranges
@@ -183,7 +183,9 @@ def _integrated(system: Wall, case: Case, output: Array, period: float, rtol: fl
             bar.to(t)
             held = held != bool(arc.t_events[0].size)
             switches += 1
-    raise RuntimeError(f"the base was caught and released {MOST_SWITCHES} times by t = {t:g} s; relax rtol or atol")
+    raise RuntimeError(
+        f"base or dampers began to stick or slip {MOST_SWITCHES} times by t = {t:g} s; relax rtol or atol"
+    )
 
 
 def _bends(motion: GroundMotion, t: float, end: float) -> bool:

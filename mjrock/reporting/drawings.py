@@ -29,7 +29,7 @@ FORCE_ARROW, LOAD_ARROW = 0.25, 0.2
 """Lengths of arrows on a corner: of a force over the walls drawn, and of a load over the height [-]."""
 BEYOND_CORNER = 0.4
 """How far walls go on in a drawing of a corner, over what moves of them [-]."""
-OTHERS = Corner, VerticalBending, HorizontalBending
+DRAWN_APART = Corner, VerticalBending, HorizontalBending
 """Mechanisms that are not drawn as the wall that stands for them."""
 Colour = str | tuple[float, float, float]
 
@@ -38,11 +38,11 @@ def drawing_of(problem: Subject, words: Words, static_answers: Sequence[StaticAn
     """The drawing of what is checked or run, with the mechanism in it, and its caption.
 
     Args:
-        problem: a case, a limit curve, what bears a load, or one of `OTHERS`.
+        problem: a case, a limit curve, what bears a load, or one of `DRAWN_APART`.
         words: of the report.
         static_answers: of masonry, results whose loads are drawn.
     """
-    if not isinstance(problem, OTHERS):
+    if not isinstance(problem, DRAWN_APART):
         return content_of(problem).rest_drawing(words, static_answers)
     figure = Figure(figsize=(PICTURE_WIDTH, TALLEST_WALL), layout="constrained")
     if isinstance(problem, Corner):

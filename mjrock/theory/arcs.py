@@ -85,12 +85,12 @@ def any_change(loads: Loads, theta: float) -> bool:
 @inlined
 def until_change(loads: Loads, theta: float, omega: float, h: float) -> float:
     """The time within a step after which a tie first changes its state, from just after it; `h` where none does."""
-    if len(loads.ties.state) == 0 or not any_change(loads, nystroem(loads, theta, omega, h)[0]):
+    if len(loads.ties.state) == 0 or not any_change(loads, nystroem(loads, theta, omega, h).theta):
         return h
     low, high = 0.0, h
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if any_change(loads, nystroem(loads, theta, omega, middle)[0]):
+        if any_change(loads, nystroem(loads, theta, omega, middle).theta):
             high = middle
         else:
             low = middle
@@ -115,13 +115,13 @@ class Rules(NamedTuple):
 
     Args:
         one_sided: whether a side stop keeps the rotation from becoming negative.
-        rest: an impact that leaves less energy than this leaves the wall at rest [J].
+        least_energy: an impact that leaves less energy than this leaves the wall at rest [J].
         longest: longest step [s].
-        duration: time to follow the motion [s].
+        duration: of the run [s].
     """
 
     one_sided: bool
-    rest: float
+    least_energy: float
     longest: float
     duration: float
 
@@ -238,8 +238,8 @@ def write_knot(room: ArcRoom, clock: Row, acceleration: float) -> None:
 
 
 @inlined
-def rebound(room: ArcRoom, law: RockingLaw, rest: float, clock: Row) -> None:
-    """Let the wall rebound, or rest where it has no more than the energy `rest` [J] left, and write the impact."""
+def rebound(room: ArcRoom, law: RockingLaw, least_energy: float, clock: Row) -> None:
+    """Let the wall rebound, or rest where it has no more than the least energy [J] left, and write the impact."""
     impact, e, omega = room.impacts[clock.impacts], room.e[clock.impacts], clock.omega
     leaving = math.copysign(1.0, e * omega)
     arriving = (law.outer if clock.side > 0 else law.inner).inertia
@@ -247,13 +247,13 @@ def rebound(room: ArcRoom, law: RockingLaw, rest: float, clock: Row) -> None:
     after = e * omega * math.sqrt(arriving / departing)
     impact.t, impact.omega_before, impact.omega_after = clock.t, omega, after
     impact.energy_before, impact.energy_after = 0.5 * arriving * omega * omega, 0.5 * departing * after * after
-    clock.omega, clock.side, clock.at_rest = after, math.copysign(1.0, after), impact.energy_after <= rest
+    clock.omega, clock.side, clock.at_rest = after, math.copysign(1.0, after), impact.energy_after <= least_energy
     clock.impacts += 1
 
 
 @compiled
 def rocking_loop(law: RockingLaw, rules: Rules, clocks: Rows, room: ArcRoom) -> None:
-    """Follow the wall until the room is nearly full, or until it lies on its face or the time is over.
+    """Make steps until the room is nearly full, the wall lies on its face, or the run is at its end.
 
     `clocks` has the row of `CLOCK` that is read and written.
     """
@@ -270,9 +270,9 @@ def rocking_loop(law: RockingLaw, rules: Rules, clocks: Rows, room: ArcRoom) -> 
             clock.t, clock.side, clock.at_rest = lifted, towards, False
         t, theta, omega, side = clock.t, clock.theta, clock.omega, clock.side
         toe = law.outer if side > 0 else law.inner
-        push, stop = pushed(law.x, law.z, t)
+        push, end = pushed(law.x, law.z, t)
         loads = Loads(toe, ties, push)
-        h = until_change(loads, theta, omega, min(rules.longest, stop - t, rules.duration - t))
+        h = until_change(loads, theta, omega, min(rules.longest, end - t, rules.duration - t))
         new_theta, new_omega, k1, k3 = nystroem(loads, theta, omega, h)
         if k1 * k3 < 0 and omega * new_omega >= 0:
             middle = h * k1 / (k1 - k3)  # of the step's extreme velocity
@@ -298,7 +298,7 @@ def rocking_loop(law: RockingLaw, rules: Rules, clocks: Rows, room: ArcRoom) -> 
         clock.t, clock.theta, clock.omega = t + h, new_theta, new_omega
         write_knot(room, clock, k3)
         if hit:
-            rebound(room, law, rules.rest, clock)
+            rebound(room, law, rules.least_energy, clock)
         clock.fell, clock.ended = fell, fell or clock.t >= rules.duration
 
 
@@ -326,22 +326,22 @@ class RockingMotion:
 
     @property
     def evaluations(self) -> int:
-        """Evaluations of Eq. 1."""
+        """Evaluations of Eq. 1 in the steps, three each, without those that find where a step ends."""
         return 3 * (len(self.knots) // 2)
 
 
-def rock(case: Case, restitutions: Callable[[int], Array], least: float, rtol: float) -> RockingMotion:
+def rock(case: Case, restitutions: Callable[[int], Array], least_energy: float, rtol: float) -> RockingMotion:
     """Rocking of the wall of a case.
 
     Args:
         case: the wall, its release, its ties and its ground motion.
         restitutions: gives those of a number of next impacts [-], as the root of the energy that is left; negative
             where the wall leaves to the side that it came from.
-        least: an impact that leaves less energy than this leaves the wall at rest [J].
+        least_energy: an impact that leaves less energy than this leaves the wall at rest [J].
         rtol: sets the longest step, see NYSTROEM.
     """
     law = RockingLaw.from_case(case)
-    rules = Rules(case.one_sided, least, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
+    rules = Rules(case.one_sided, least_energy, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
     clocks = rows(CLOCK, 1, theta=case.theta0, omega=case.omega0, side=case.direction)
     clock = clocks[0]
     clock.at_rest = case.release_energy == 0

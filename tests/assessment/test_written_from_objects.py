@@ -169,7 +169,7 @@ WALL = mr.Case(FACADE)
     [
         (
             Mechanism(mr.MasonryCase(mr.Masonry(BLOCKS, friction=lambda joint: 0.5))),
-            "masonry.friction is a function, for which a file has no words; give a number",
+            "masonry.friction is a function, for which a file has no words; give a number, a text or a table",
         ),
         *((Mechanism(mr.MasonryCase(make())), "masonry.friction is a function") for make in REFUSED.values()),
         (Mechanism(WALL, lambda T, xi: 0.1), "site = <function .* is no spectrum of a code and no PointSpectrum"),

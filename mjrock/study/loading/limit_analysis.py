@@ -205,7 +205,10 @@ def collapse_multiplier(
 def _require_absent(**arguments: object) -> None:
     """Raise a ValueError for arguments that the wall of a case has no place for."""
     if names := [name for name, value in arguments.items() if value is not None]:
-        raise ValueError(f"{named(names)} is for masonry of blocks; a Case has its effects, and rocks in its plane")
+        raise ValueError(
+            f"{named(names)} cannot be given for a Case, which has its own effects and rocks in its plane; "
+            "masonry of blocks takes it"
+        )
 
 
 def overturned(case: Case, direction: object, loads: object) -> Collapse:
@@ -366,7 +369,9 @@ def horizontal(masonry: Masonry, direction: float | ArrayLike | None, angle: InP
         raise ValueError(f"{name} = {shown(direction)} is not a direction; the valid ones are {valid}")
     length = float(np.hypot(*vector))
     if not 1e-9 < length < math.inf:
-        raise ValueError(f"{name} = {shown(direction)} has a length of {length:g}; it is above 1e-9 and finite")
+        raise ValueError(
+            f"{name} = {shown(direction)} has a length of {length:g}; the length has to be finite and above 1e-9"
+        )
     if angle is not None:
         if not masonry.in_space:
             raise ValueError(f"angle = {shown(angle)} is for masonry in space; in the plane give {name} = 1 or -1")
@@ -469,7 +474,7 @@ def limit_curve(
     constant_effects = _required_effects(masonry, effects)
     push = partial(collapse_multiplier, masonry, direction, angle=angle, loads=loads, effects=constant_effects)
     start = collapse = push()
-    path = Path.from_collapse(masonry, start)
+    path = MechanismPath.from_collapse(masonry, start)
     if to is None:
         step = path.expected_length(start, push) / poses
         to, allowed = math.inf, STEPS_ALLOWED * poses
@@ -522,8 +527,8 @@ class ClosedLines(NamedTuple):
     slides: Flags
 
 
-class Path(NamedTuple):
-    """What a mechanism goes on with.
+class MechanismPath(NamedTuple):
+    """The path of a mechanism from the pose at rest, along the forces that grow.
 
     Args:
         masonry: the masonry.
@@ -538,7 +543,7 @@ class Path(NamedTuple):
     size: float
 
     @classmethod
-    def from_collapse(cls, masonry: Masonry, start: Collapse) -> Path:
+    def from_collapse(cls, masonry: Masonry, start: Collapse) -> MechanismPath:
         """That of masonry pushed along a direction, or by the loads alone with which it begins to move."""
         share = pushed(masonry, start.direction) if start.direction.any() else _forces(masonry, start.loads)
         total = float(np.linalg.norm(share[:, : len(start.direction)], axis=1).sum())
@@ -555,7 +560,7 @@ class Path(NamedTuple):
         return at_rest(len(self.share), freedom).reshape(len(self.share), -1)
 
     def travel(self, pose: Array) -> float:
-        """Displacement along the forces that grow, by their work [m]."""
+        """Displacement along the forces that grow, by their work [m]; in space a rotation phi is 2 sin(phi / 2)."""
         turned = 2 * pose[:, 4:] if self.masonry.in_space else pose[:, 2:]
         d = 3 if self.masonry.in_space else 2
         return float((self.share * np.concatenate([pose[:, :d], turned], axis=1)).sum())
