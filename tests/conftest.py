@@ -63,6 +63,7 @@ def _coarse_pictures() -> Generator[None, None, None]:
 
 
 LONG = {"test_hostile", "test_wheel", "test_pages", "test_scripts", "test_earthquakes", "test_plausible_masonry"}
+LONG |= {"test_bounds", "test_digests"}
 """Files with the longest tests."""
 
 

@@ -31,7 +31,7 @@ from ..study.loading.load_check import StaticAnswer
 from ..study.loading.mechanism_curve import case_of
 from . import content, inputs, pictures, verdicts
 from .content import Content, content_of
-from .drawings import OTHERS
+from .drawings import DRAWN_APART
 from .markup import Markup, element, listed, page, picture, table, write_pdf
 from .parts import Part, drawings_of, is_of, parts_of
 from .pictures import Run, by_variant
@@ -99,7 +99,7 @@ def report(
             page does not have.
         ImportError: for a PDF without WeasyPrint.
     """
-    require_kind("case", case, Case, MasonryCase, *OTHERS)
+    require_kind("case", case, Case, MasonryCase, *DRAWN_APART)
     path = require_path("path", path)
     if path.suffix.lower() not in (".html", ".pdf"):
         raise ValueError(f"path = {(path.name or str(path))!r} does not end in .html or .pdf")

@@ -11,7 +11,7 @@ from ..problem.wall.bending import HorizontalBending
 from ..study.loading.mechanism_curve import case_of
 from . import verdicts
 from .content import Content, content_of
-from .drawings import OTHERS, drawing_of
+from .drawings import DRAWN_APART, drawing_of
 from .markup import Markup, framed, image_of
 from .pictures import Run, by_variant
 from .texts import Words
@@ -88,10 +88,10 @@ def parts_of(case_name: str, case: Subject, mechanisms: Sequence[Mechanism], run
         for subject in subjects:
             part.add(mechanism.name, subject)
     for variant, runs_of_variant in by_variant(runs).items():
-        subject_run = case if not variant and isinstance(case, OTHERS) else runs_of_variant[0].response.case
+        subject_run = case if not variant and isinstance(case, DRAWN_APART) else runs_of_variant[0].response.case
         part = by_name[variant or case_name] if (variant or case_name) in by_name else _part_of(subject_run, parts)
         part.runs += runs_of_variant
-        part.add(variant or case_name, part.body if isinstance(part.body, OTHERS) else subject_run)
+        part.add(variant or case_name, part.body if isinstance(part.body, DRAWN_APART) else subject_run)
     for part in [part for part in parts if part.is_of(case)] if parts else [_part_of(case, parts)]:
         if all(_drawn_features(named.subject) != _drawn_features(case) for named in part.subjects):
             part.subjects.insert(0, NamedSubject([case_name], case))
@@ -100,7 +100,7 @@ def parts_of(case_name: str, case: Subject, mechanisms: Sequence[Mechanism], run
 
 def body_of(subject: Subject) -> object:
     """A wall, corner or masonry without its effects."""
-    if isinstance(subject, OTHERS):
+    if isinstance(subject, DRAWN_APART):
         return subject if isinstance(subject, HorizontalBending) else replace(subject, effects=())
     return case_of(subject).built
 
@@ -120,7 +120,7 @@ def _part_of(subject: Subject, parts: list[Part]) -> Part:
 
 def _drawn_features(subject: Subject) -> tuple[object, ...]:
     """What a drawing shows of a subject."""
-    drawn = subject if isinstance(subject, OTHERS) else case_of(subject)
+    drawn = subject if isinstance(subject, DRAWN_APART) else case_of(subject)
     return body_of(drawn), getattr(drawn, "effects", ()), getattr(drawn, "side_stop", None)
 
 

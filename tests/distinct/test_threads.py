@@ -20,6 +20,7 @@ from mjrock.distinct.setup import setup_of
 from mjrock.distinct.system import Books
 from mjrock.distinct.thread import LINES_TOGETHER, pending_forces, spans_of, threads_of
 from mjrock.rows import rows
+from tests.cores import one_core
 
 JOINTS = {"k_n": 1e9, "k_s": 4e8, "friction": 0.6, "xi": 0.05}
 MORTAR = mr.BONDS["cement mortar, wall J4D"]
@@ -228,7 +229,8 @@ def test_blocks_that_fall_have_the_same_bits_in_any_number_of_threads(monkeypatc
     monkeypatch.setattr(thread, "LINES_TOGETHER", 16)
     monkeypatch.setattr(thread, "BODIES_TOGETHER", 16)
     pushed = mr.GroundMotion([40.0, 40.0, -40.0, -40.0], 0.3)
-    answer = same(replace(wall(0.8, friction=0.2), motion=pushed), (2, 4), output_step=0.01)
+    with one_core():
+        answer = same(replace(wall(0.8, friction=0.2), motion=pushed), (2, 4), output_step=0.01)
     assert answer.fallen
     assert answer.ledger.dashpots["encounters"][-1] > 0
 

@@ -21,6 +21,7 @@ import mjrock as mr
 from mjrock.distinct import thread
 from mjrock.distinct.contacts.friction import SETTLED
 
+from ..cores import one_core
 from .quantities import Scene, changed, moved, scaled, turned
 from .random_scenes import DENSITY, PLACES, box, draw
 from .runs import (
@@ -175,7 +176,7 @@ def in_threads(trial: Trial) -> float | None:
     """Explicit steps by two and four threads, which share the lines by four and the blocks one by one."""
     if trial.scene["solver"] != "explicit":
         return None
-    with patch.multiple(thread, LINES_TOGETHER=4, BODIES_TOGETHER=1):
+    with patch.multiple(thread, LINES_TOGETHER=4, BODIES_TOGETHER=1), one_core():
         return max(trial.differs(trial.again(threads=count)) for count in (2, 4))
 
 

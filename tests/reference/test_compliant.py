@@ -1,3 +1,5 @@
+"""The solver of the contact law in SciPy: conservation, limits, and the tolerances that it keeps."""
+
 import numpy as np
 import pytest
 
@@ -70,3 +72,11 @@ def test_a_hardly_damped_base_that_is_caught_and_released_often_ends(wall):
 def test_bad_tolerances(two_sided, contacts, values):
     with pytest.raises(ValueError, match="outside the valid range"):
         mr.solve_compliant(two_sided, contacts, **values)
+
+
+def test_a_run_that_sticks_and_slips_without_end_is_an_error(wall, contacts, monkeypatch):
+    """Here the first slip is one too many."""
+    monkeypatch.setattr("mjrock.reference.compliant.MOST_SWITCHES", 1)
+    case = mr.Case(wall, 0.3 * wall.alpha, 1.0, effects=mr.FrictionDamper(4.0, 1e6, 100.0))
+    with pytest.raises(RuntimeError, match=r"base or dampers began to stick or slip 1 times by t = .* s; relax"):
+        mr.solve_compliant(case, contacts)
