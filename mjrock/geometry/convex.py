@@ -80,16 +80,16 @@ def cleaned(polygon: Array, tolerance: float) -> Array:
 
 def area(polygon: Array) -> float:
     """Area of a polygon [m2]."""
-    about = polygon - polygon[0]
-    return 0.5 * float(cross(about, next_of(about)).sum())
+    arms = polygon - polygon[0]
+    return 0.5 * float(cross(arms, next_of(arms)).sum())
 
 
 def polygon_centroid(polygon: Array) -> Array:
     """Centroid of the area of a polygon [m], shape (2,)."""
-    about = polygon - polygon[0]
-    after = next_of(about)
-    twice = cross(about, after)
-    middle: Array = polygon[0] + (twice[:, None] * (about + after)).sum(axis=0) / (3 * twice.sum())
+    arms = polygon - polygon[0]
+    after = next_of(arms)
+    doubled_areas = cross(arms, after)
+    middle: Array = polygon[0] + (doubled_areas[:, None] * (arms + after)).sum(axis=0) / (3 * doubled_areas.sum())
     return middle
 
 
@@ -131,8 +131,8 @@ def exact_shares(count: int) -> Array:
     """
     shares = np.full(count, 1 / (count - 1))
     shares[[0, -1]] /= 2
-    moved = 1 / (12 * (count - 2))
-    np.add.at(shares, [0, 1, -2, -1], [-moved, moved, moved, -moved])
+    correction = 1 / (12 * (count - 2))
+    np.add.at(shares, [0, 1, -2, -1], [-correction, correction, correction, -correction])
     return shares
 
 
@@ -148,15 +148,15 @@ def spread(polygon: Array, points: int) -> tuple[Array, Array]:
     if points == 2:
         return polygon, area(polygon) * shares(polygon, polygon_centroid(polygon))
     quads, divisions = ([polygon], points - 1) if len(polygon) == 4 else (_quarters(polygon), points // 2)
-    places, areas = [], []
+    corners, areas = [], []
     for quad in quads:
         grid = _grid(quad, divisions)[0]
         for i in range(divisions):
             for j in range(divisions):
                 cell = np.array([grid[i, j], grid[i + 1, j], grid[i + 1, j + 1], grid[i, j + 1]])
-                places.append(cell)
+                corners.append(cell)
                 areas.append(area(cell) * shares(cell, polygon_centroid(cell)))
-    return _gathered(np.concatenate(places), np.concatenate(areas))
+    return _merged_places(np.concatenate(corners), np.concatenate(areas))
 
 
 def sectioned(polygon: Array, points: int) -> tuple[Array, Array]:
@@ -166,10 +166,10 @@ def sectioned(polygon: Array, points: int) -> tuple[Array, Array]:
     about each point. The quadrilaterals of other polygons have at least three points a side. `points` is at least 3.
     """
     quads, divisions = ([polygon], points - 1) if len(polygon) == 4 else (_quarters(polygon), max(points // 2, 2))
-    both = np.multiply.outer(*[exact_shares(divisions + 1)] * 2)
+    weights = np.multiply.outer(*[exact_shares(divisions + 1)] * 2)
     grids = [_grid(quad, divisions) for quad in quads]
     places = np.concatenate([grid.reshape(-1, 2) for grid, _ in grids])
-    return _gathered(places, np.concatenate([(both * about).ravel() for _, about in grids]))
+    return _merged_places(places, np.concatenate([(weights * jacobian).ravel() for _, jacobian in grids]))
 
 
 def _quarters(polygon: Array) -> list[Array]:
@@ -183,12 +183,12 @@ def _grid(quad: Array, divisions: int) -> tuple[Array, Array]:
     the map from the unit square [m2]."""
     a, b, c, d = quad
     steps = np.linspace(0.0, 1.0, divisions + 1)
-    s, t = (each[..., None] for each in np.meshgrid(steps, steps, indexing="ij"))
+    s, t = (values[..., None] for values in np.meshgrid(steps, steps, indexing="ij"))
     places = ((1 - s) * (1 - t)) * a + (s * (1 - t)) * b + (s * t) * c + ((1 - s) * t) * d
     return places, cross((1 - t) * (b - a) + t * (c - d), (1 - s) * (d - a) + s * (c - b))
 
 
-def _gathered(places: Array, areas: Array) -> tuple[Array, Array]:
+def _merged_places(places: Array, areas: Array) -> tuple[Array, Array]:
     """Places that coincide as one, with the sum of their areas."""
     extent = float(np.ptp(places, axis=0).max())
     keys = np.round((places - places[0]) / (1.3e-9 * extent))  # no fraction of an edge lies between two keys

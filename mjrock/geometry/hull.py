@@ -89,7 +89,7 @@ class Convex:
         corners, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
         order = np.argsort(first)
         number = np.argsort(order)[number.ravel()]
-        rings = (range(n), range(2 * n - 1, n - 1, -1), *_sides(n))
+        rings = (range(n), range(2 * n - 1, n - 1, -1), *_ring_faces(n))
         faces = [tuple(dict.fromkeys(number[list(ring)].tolist())) for ring in rings]
         corners, kept = corners[order], tuple(face for face in faces if len(face) > 2)
         vectors = np.array([area_vector(corners[list(face)]) for face in kept])
@@ -136,8 +136,8 @@ class Convex:
         """Middle and half sizes of a box along the axes [m], shape (3,) each; None of any other body."""
         low, high = self.corners.min(axis=0), self.corners.max(axis=0)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        off = np.abs(np.abs(self.corners - middle) - half).max()
-        return (middle, half) if len(self.corners) == 8 and off <= 1e-12 * np.abs(self.corners).max() else None
+        deviation = np.abs(np.abs(self.corners - middle) - half).max()
+        return (middle, half) if len(self.corners) == 8 and deviation <= 1e-12 * np.abs(self.corners).max() else None
 
 
 def hull_of(points: Array) -> Hull:
@@ -164,18 +164,18 @@ def _hull_of_shape(points: bytes, extent: float) -> Hull:
         facets = scipy.spatial.ConvexHull(centred)
     except scipy.spatial.QhullError:
         raise ValueError(f"vertices enclose no body: they are {thickness * extent:.3g} m thick") from None
-    sets = _coplanar(centred, facets)
+    planes = _corners_by_plane(centred, facets)
     number_of_faces = np.zeros(len(centred), dtype=int)
-    for members in sets:
+    for members in planes:
         number_of_faces[members] += 1
     corners = np.flatnonzero(number_of_faces >= 3)  # a point on an edge belongs to two faces
     number = np.full(len(centred), -1)
     number[corners] = np.arange(len(corners))
     faces, normals = [], []
-    for members in sets:
+    for members in planes:
         ring = [i for i in members if number[i] >= 0]
         if len(ring) >= 3:
-            order, normal = _around(centred[ring], centred[members].mean(axis=0))
+            order, normal = _ordered_ring(centred[ring], centred[members].mean(axis=0))
             faces.append(tuple(int(number[ring[i]]) for i in order))
             normals.append(normal)
     if len(faces) < 4:
@@ -186,7 +186,7 @@ def _hull_of_shape(points: bytes, extent: float) -> Hull:
     return Hull(tuple(corners.tolist()), tuple(faces), outwards, depth * extent)
 
 
-def _coplanar(points: Array, facets: scipy.spatial.ConvexHull) -> list[list[int]]:
+def _corners_by_plane(points: Array, facets: scipy.spatial.ConvexHull) -> list[list[int]]:
     """Corners of the facets of each plane, the planes of the largest facets first. Points have an extent of 1."""
     a, b, c = points[facets.simplices].transpose(1, 0, 2)
     areas = np.linalg.norm(cross_in_space(b - a, c - a), axis=1)
@@ -195,20 +195,20 @@ def _coplanar(points: Array, facets: scipy.spatial.ConvexHull) -> list[list[int]
     for seed in np.argsort(-areas, kind="stable"):
         if unassigned[seed]:
             normal, offset = facets.equations[seed, :3], facets.equations[seed, 3]
-            near = np.abs(points @ normal + offset) <= COPLANAR
-            same = unassigned & near[facets.simplices].all(axis=1) & (facets.equations[:, :3] @ normal > 0)
-            same[seed] = True
-            unassigned &= ~same
-            planes.append(np.unique(facets.simplices[same]).tolist())
+            on_plane = np.abs(points @ normal + offset) <= COPLANAR
+            in_plane = unassigned & on_plane[facets.simplices].all(axis=1) & (facets.equations[:, :3] @ normal > 0)
+            in_plane[seed] = True
+            unassigned &= ~in_plane
+            planes.append(np.unique(facets.simplices[in_plane]).tolist())
     return planes
 
 
-def _around(ring: Array, middle: Array) -> tuple[list[int], Array]:
+def _ordered_ring(ring: Array, middle: Array) -> tuple[list[int], Array]:
     """The order of corners of a face around it, and its unit normal, which points away from the origin."""
-    about = ring - ring.mean(axis=0)
-    plane = np.linalg.svd(about, full_matrices=False)[2]
-    order = np.argsort(np.arctan2(about @ plane[1], about @ plane[0]), kind="stable")
-    normal = area_vector(about[order])
+    centred = ring - ring.mean(axis=0)
+    plane = np.linalg.svd(centred, full_matrices=False)[2]
+    order = np.argsort(np.arctan2(centred @ plane[1], centred @ plane[0]), kind="stable")
+    normal = area_vector(centred[order])
     if normal @ middle < 0:
         order, normal = order[::-1], -normal
     first = int(np.argmin(order))  # each face starts at its lowest number
@@ -234,30 +234,30 @@ def triangles_of(faces: Iterable[tuple[int, ...]]) -> list[tuple[int, int, int]]
 
 def area_vector(ring: Array) -> Array:
     """The normal of a plane polygon, as long as its area, shape (3,); the ring is counterclockwise about it, (n, 3)."""
-    about = ring - ring[0]
-    summed: Array = 0.5 * cross_in_space(about, next_of(about)).sum(axis=0)
-    return summed
+    arms = ring - ring[0]
+    area_normal: Array = 0.5 * cross_in_space(arms, next_of(arms)).sum(axis=0)
+    return area_normal
 
 
 def prism(outline: Array, length: float) -> tuple[Array, Faces]:
     """Corners and faces of a convex outline x, z, counterclockwise with z upwards, over a length along y about 0."""
     n, (x, z) = len(outline), outline.T
     corners = np.concatenate([np.column_stack([x, np.full(n, y), z]) for y in (-0.5 * length, 0.5 * length)])
-    return corners, (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *_sides(n))
+    return corners, (tuple(range(n)), tuple(range(2 * n - 1, n - 1, -1)), *_ring_faces(n))
 
 
-def _sides(n: int) -> Faces:
+def _ring_faces(n: int) -> Faces:
     """Numbers of the corners of the faces between two polygons of n corners, one for each edge."""
     return tuple((i, n + i, n + (i + 1) % n, (i + 1) % n) for i in range(n))
 
 
-def edge_separating_axes(one: Convex, other: Convex) -> Array:
+def edge_separating_axes(body: Convex, other: Convex) -> Array:
     """Unit vectors perpendicular to an edge of each of two bodies, for pairs of edges that are not parallel, (n, 3).
 
     Two convex bodies that do not touch are separated along one of these or along the normal of a face (Gottschalk,
     Separating axis theorem, Technical Report TR96-024, UNC Chapel Hill, 1996).
     """
-    axes = cross_in_space(one.edges[:, None], other.edges[None]).reshape(-1, 3)
+    axes = cross_in_space(body.edges[:, None], other.edges[None]).reshape(-1, 3)
     lengths = np.linalg.norm(axes, axis=1)
     unlike_edges = lengths > UNCROSSED
     return np.asarray(axes[unlike_edges] / lengths[unlike_edges, None])

@@ -36,13 +36,13 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
         ValueError: for more parts.
     """
     origin, extent = corners.mean(axis=0), float(np.ptp(corners, axis=0).max())
-    about = (corners - origin) / extent
-    fans = [about[triangles_of([face])] for face in faces]
+    centred = (corners - origin) / extent
+    fans = [centred[triangles_of([face])] for face in faces]
     triangles = np.concatenate(fans)
-    plane = [np.ptp(about[list(face)] @ _normal(about[list(face)])) <= ON_PLANE for face in faces]
-    sides = [[about[list(face)]] if flat else [*fan] for face, fan, flat in zip(faces, fans, plane, strict=True)]
-    open_cells = [(about, list(chain.from_iterable(sides)))]
-    whole: list[Array] = []
+    is_plane = [np.ptp(centred[list(face)] @ _normal(centred[list(face)])) <= ON_PLANE for face in faces]
+    sides = [[centred[list(face)]] if flat else [*fan] for face, fan, flat in zip(faces, fans, is_plane, strict=True)]
+    open_cells = [(centred, list(chain.from_iterable(sides)))]
+    filled_cells: list[Array] = []
     count = 0
     while open_cells:
         cell, polygons = open_cells.pop()
@@ -51,23 +51,23 @@ def convex_parts(corners: Array, faces: Sequence[tuple[int, ...]], most: int) ->
         except ValueError:  # what is cut off is thinner than a part can be
             continue
         cell = cell[list(hull.corners)]
-        cut = _plane(cell, polygons)
-        if cut is None:
+        plane = _cutting_plane(cell, polygons)
+        if plane is None:
             if abs(_winding(bulk_of(cell, hull.faces).centroid, triangles)) > 0.5:
-                whole.append(cell)
+                filled_cells.append(cell)
             continue
         count += 1
         if count > CELLS_A_PART * most:
             raise ValueError(f"its faces cut it into more than {most} parts")
-        normal, offset = cut
+        normal, offset = plane
         for sense in (1.0, -1.0):
-            kept = [_kept(polygon, sense * normal, sense * offset) for polygon in polygons]
-            corners_kept = _half(cell, hull, sense * normal, sense * offset)
+            kept = [_polygon_beyond(polygon, sense * normal, sense * offset) for polygon in polygons]
+            corners_kept = _cell_corners_beyond(cell, hull, sense * normal, sense * offset)
             open_cells.append((corners_kept, [polygon for polygon in kept if len(polygon) > 2]))
-    whole = _together(whole)
-    if len(whole) > most:
-        raise ValueError(f"its faces cut it into {len(whole)} parts, and {most} is the most")
-    return [origin + extent * part for part in whole]
+    filled_cells = _joined_parts(filled_cells)
+    if len(filled_cells) > most:
+        raise ValueError(f"its faces cut it into {len(filled_cells)} parts, and {most} is the most")
+    return [origin + extent * part for part in filled_cells]
 
 
 def _normal(ring: Array) -> Array:
@@ -76,7 +76,7 @@ def _normal(ring: Array) -> Array:
     return normal / max(float(np.linalg.norm(normal)), ON_PLANE * ON_PLANE)
 
 
-def _plane(cell: Array, polygons: Sequence[Array]) -> tuple[Array, float] | None:
+def _cutting_plane(cell: Array, polygons: Sequence[Array]) -> tuple[Array, float] | None:
     """The plane of the largest polygon that goes through a cell, its unit normal and offset, or None."""
     areas = np.array([np.linalg.norm(area_vector(polygon)) for polygon in polygons])
     for i in np.argsort(-areas, kind="stable").tolist():
@@ -88,7 +88,7 @@ def _plane(cell: Array, polygons: Sequence[Array]) -> tuple[Array, float] | None
     return None
 
 
-def _kept(polygon: Array, normal: Array, offset: float) -> Array:
+def _polygon_beyond(polygon: Array, normal: Array, offset: float) -> Array:
     """The part of a polygon on the side of a plane to which its normal points; none of a polygon in the plane."""
     above = polygon @ normal - offset
     if above.max() <= ON_PLANE:
@@ -98,7 +98,7 @@ def _kept(polygon: Array, normal: Array, offset: float) -> Array:
     return kept_of(polygon, above)
 
 
-def _half(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
+def _cell_corners_beyond(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
     """Corners of the part of a convex cell on the side of a plane to which its normal points."""
     above = cell @ normal - offset
     above = np.where(np.abs(above) <= ON_PLANE, 0.0, above)
@@ -113,25 +113,25 @@ def _half(cell: Array, hull: Hull, normal: Array, offset: float) -> Array:
 def _winding(point: Array, triangles: Array) -> float:
     """How often triangles go around a point [-] (Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983, 125)."""
     a, b, c = (triangles - point).transpose(1, 0, 2)
-    lengths = [np.linalg.norm(each, axis=1) for each in (a, b, c)]
-    over = (np.cross(a, b) * c).sum(axis=1)
-    under = lengths[0] * lengths[1] * lengths[2]
-    for (one, other), length in zip(((a, b), (b, c), (c, a)), (lengths[2], lengths[0], lengths[1]), strict=True):
-        under = under + (one * other).sum(axis=1) * length
-    return float(np.arctan2(over, under).sum()) / (2 * np.pi)
+    lengths = [np.linalg.norm(vectors, axis=1) for vectors in (a, b, c)]
+    numerator = (np.cross(a, b) * c).sum(axis=1)
+    denominator = lengths[0] * lengths[1] * lengths[2]
+    for (first, second), length in zip(((a, b), (b, c), (c, a)), (lengths[2], lengths[0], lengths[1]), strict=True):
+        denominator = denominator + (first * second).sum(axis=1) * length
+    return float(np.arctan2(numerator, denominator).sum()) / (2 * np.pi)
 
 
-def _together(parts: list[Array]) -> list[Array]:
+def _joined_parts(parts: list[Array]) -> list[Array]:
     """Parts, with those joined whose union is convex."""
     volumes = [_volume(part) for part in parts]
     while True:
         for i, j in combinations(range(len(parts)), 2):
             if not _touch(parts[i], parts[j]):
                 continue
-            both = np.concatenate([parts[i], parts[j]])
-            if (volume := _volume(both)) - volumes[i] - volumes[j] <= ONE_PART * volume:
+            union = np.concatenate([parts[i], parts[j]])
+            if (volume := _volume(union)) - volumes[i] - volumes[j] <= ONE_PART * volume:
                 kept = [k for k in range(len(parts)) if k not in (i, j)]
-                parts = [both[list(hull_of(both).corners)], *(parts[k] for k in kept)]
+                parts = [union[list(hull_of(union).corners)], *(parts[k] for k in kept)]
                 volumes = [volume, *(volumes[k] for k in kept)]
                 break
         else:
@@ -168,26 +168,26 @@ def creases_of(parts: Sequence[Convex]) -> Array:
         return edges
     corners = np.concatenate([part.corners for part in parts])
     extent = float(np.ptp(corners, axis=0).max())
-    pieces = np.concatenate([_cut(edge, corners, ALONG_EDGE * extent) for edge in edges])
+    pieces = np.concatenate([_pieces_of_edge(edge, corners, ALONG_EDGE * extent) for edge in edges])
     middles = pieces.mean(axis=1)
-    _, once = np.unique(np.round(middles / (ALONG_EDGE * extent)), axis=0, return_index=True)
-    pieces, middles = pieces[np.sort(once)], middles[np.sort(once)]
-    around = np.stack([_circle(end - start) for start, end in pieces])
-    probes = middles[:, None] + ASIDE_OF_EDGE * extent * around
-    within = np.zeros(probes.shape[:2], dtype=bool)
+    _, first_of_each = np.unique(np.round(middles / (ALONG_EDGE * extent)), axis=0, return_index=True)
+    pieces, middles = pieces[np.sort(first_of_each)], middles[np.sort(first_of_each)]
+    circles = np.stack([_circle(end - start) for start, end in pieces])
+    probes = middles[:, None] + ASIDE_OF_EDGE * extent * circles
+    inside = np.zeros(probes.shape[:2], dtype=bool)
     for part in parts:
-        within |= (probes @ part.normals.T <= part.offsets + ALONG_EDGE * extent).all(axis=2)
-    count = within.sum(axis=1)
+        inside |= (probes @ part.normals.T <= part.offsets + ALONG_EDGE * extent).all(axis=2)
+    count = inside.sum(axis=1)
     return np.asarray(pieces[(count < PROBES) & (np.abs(count - PROBES // 2) > 1)])
 
 
-def _cut(edge: Array, corners: Array, near: float) -> Array:
+def _pieces_of_edge(edge: Array, corners: Array, near: float) -> Array:
     """The pieces of an edge between the corners that lie on it [m], shape (n, 2, 3)."""
     start, along = edge[0], edge[1] - edge[0]
     length = float(np.linalg.norm(along))
     places = (corners - start) @ along / length
-    off = np.linalg.norm(corners - start - places[:, None] * along / length, axis=1)
-    inner = np.unique(np.round(places[(off < near) & (places > near) & (places < length - near)] / near)) * near
+    aside = np.linalg.norm(corners - start - places[:, None] * along / length, axis=1)
+    inner = np.unique(np.round(places[(aside < near) & (places > near) & (places < length - near)] / near)) * near
     points = start + np.concatenate([[0.0], inner, [length]])[:, None] * along / length
     return np.stack([points[:-1], points[1:]], axis=1)
 

@@ -68,7 +68,7 @@ def moved(pose: Array, motion: Array, freedom: Freedom) -> Array:
     """
     if freedom == PLANE:
         return pose + motion
-    before, change = _by_body(pose, 7), _by_body(motion, 6)
+    before, change = _values_by_body(pose, 7), _values_by_body(motion, 6)
     angle = np.linalg.norm(change[..., 3:], axis=-1, keepdims=True)
     turn = np.concatenate([np.cos(0.5 * angle), 0.5 * np.sinc(0.5 * angle / np.pi) * change[..., 3:]], axis=-1)
     after = np.concatenate([before[..., :3] + change[..., :3], _product(before[..., 3:], turn)], axis=-1)
@@ -79,7 +79,7 @@ def turned(pose: Array, freedom: Freedom) -> Array:
     """Angle by which each body is turned from rest [rad], shape (..., bodies)."""
     if freedom == PLANE:
         return np.abs(pose[..., 2::3])
-    return angle_of(_by_body(pose, 7))
+    return angle_of(_values_by_body(pose, 7))
 
 
 def tilts(pose: Array, freedom: Freedom) -> Array:
@@ -88,15 +88,15 @@ def tilts(pose: Array, freedom: Freedom) -> Array:
     if freedom == PLANE:
         turn = np.abs(pose[..., 2::3]) % (2 * np.pi)
         return np.minimum(turn, 2 * np.pi - turn)
-    return tilt_of(_by_body(pose, 7))
+    return tilt_of(_values_by_body(pose, 7))
 
 
 def angles(pose: Array, start: Array, freedom: Freedom) -> Array:
     """Angle by which each body is turned from a start to a pose [rad], shape (..., bodies)."""
     if freedom == PLANE:
         return np.abs(pose[..., 2::3] - start[..., 2::3])
-    turn = _by_body(pose, 7).copy()
-    turn[..., 3:] = _product(_by_body(start, 7)[..., 3:] * (1.0, -1.0, -1.0, -1.0), turn[..., 3:])
+    turn = _values_by_body(pose, 7).copy()
+    turn[..., 3:] = _product(_values_by_body(start, 7)[..., 3:] * (1.0, -1.0, -1.0, -1.0), turn[..., 3:])
     return angle_of(turn)
 
 
@@ -104,7 +104,7 @@ def coordinate_rates(pose: Array, velocity: Array, freedom: Freedom) -> Array:
     """Rates of the coordinates of a pose at a velocity, shape (..., bodies nq)."""
     if freedom == PLANE:
         return velocity
-    q, v = _by_body(pose, 7), _by_body(velocity, 6)
+    q, v = _values_by_body(pose, 7), _values_by_body(velocity, 6)
     spin = np.concatenate([np.zeros_like(v[..., :1]), v[..., 3:]], axis=-1)
     rates = np.concatenate([v[..., :3], 0.5 * _product(q[..., 3:], spin)], axis=-1)
     return rates.reshape(pose.shape)
@@ -114,7 +114,7 @@ def from_rates(pose: Array, rates: Array, freedom: Freedom) -> tuple[Array, Arra
     """A pose with quaternions of unit length, and the velocity at which its coordinates have these rates."""
     if freedom == PLANE:
         return pose, rates
-    q, v = _by_body(pose, 7).copy(), _by_body(rates, 7)
+    q, v = _values_by_body(pose, 7).copy(), _values_by_body(rates, 7)
     length = np.linalg.norm(q[..., 3:], axis=-1, keepdims=True)
     q[..., 3:] /= length
     spin = 2 * _product(q[..., 3:] * (1.0, -1.0, -1.0, -1.0), v[..., 3:] / length)[..., 1:]
@@ -122,7 +122,7 @@ def from_rates(pose: Array, rates: Array, freedom: Freedom) -> tuple[Array, Arra
     return q.reshape(pose.shape), velocity.reshape(*pose.shape[:-1], -1)
 
 
-def _by_body(values: Array, count: int) -> Array:
+def _values_by_body(values: Array, count: int) -> Array:
     """Values by body, shape (..., bodies, count)."""
     return values.reshape(*values.shape[:-1], -1, count)
 

@@ -173,7 +173,7 @@ class Interface:
         return float(np.sum(self.stiffness * self.positions**2))
 
 
-def _predicted(law: DampingFunction, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
+def _predicted_ratios(law: DampingFunction, wall: Block, e: Restitution, k_base: float) -> tuple[float, float]:
     """The two damping ratios of a law of the user, or a TypeError that names the law."""
     refusal = f"law = {shown(law)} is not called as law(wall, e, k_base) to give two numbers"
     if not takes(law, 3):
@@ -196,7 +196,7 @@ def required_law(law: AnyLaw | str | None, points: int = 2) -> AnyLaw:
     return law
 
 
-def _unlike_fit(
+def _differences_from_fit(
     law: DampingLaw, points: int, k_side: float | None, friction: float | None, side_friction: float | None
 ) -> Iterator[str]:
     """How contacts differ from those that a law was fitted for, in words."""
@@ -279,12 +279,12 @@ class Contacts:
         side = None
         if k_side is not None:
             side = Interface(k_side, xi_side, 2 * wall.h, wall.length, omega, points, side_friction)
-        overturning = wall.weight * wall.centroid_height  # moment for a unit of rotation
-        if base.K_rot <= overturning:
-            least = k_base * overturning / base.K_rot
+        overturning_moment = wall.weight * wall.centroid_height  # moment for a unit of rotation
+        if base.K_rot <= overturning_moment:
+            softest = k_base * overturning_moment / base.K_rot
             raise ValueError(
                 f"base stiffness k_base = {k_base:g} N/m3 cannot hold the wall upright; "
-                f"the valid range is k_base > {least:.3g} N/m3"
+                f"the valid range is k_base > {softest:.3g} N/m3"
             )
         return cls(base, side, law, stop_top=stop_top)
 
@@ -332,10 +332,10 @@ class Contacts:
             e.require_rebound()
         if isinstance(law, DampingLaw):
             xi_base, xi_side = law(wall, e, k_base, k_side, amplitude)
-            for difference in _unlike_fit(law, points, k_side, friction, side_friction):
+            for difference in _differences_from_fit(law, points, k_side, friction, side_friction):
                 warn_of(difference)
         else:
-            xi_base, xi_side = _predicted(law, wall, e, k_base)
+            xi_base, xi_side = _predicted_ratios(law, wall, e, k_base)
         if unlike_wall := e.difference_from(wall, None):
             warn_of(unlike_wall, Implausible)
         if k_side is not None and (rebound := rebound_over_uplift(wall, e, k_base, amplitude)) < 1:
@@ -393,7 +393,7 @@ class Contacts:
             faces.append(("side", self._required_side, (2 * wall.h, wall.length)))
         for name, interface, required in faces:
             size = interface.face, interface.length
-            if not all(math.isclose(given, needed, rel_tol=1e-9) for given, needed in zip(size, required, strict=True)):
+            if not all(math.isclose(span, needed, rel_tol=1e-9) for span, needed in zip(size, required, strict=True)):
                 raise ValueError(
                     f"the {name} contacts were made for a face of {size[0]:g} x {size[1]:g} m, "
                     f"but that of the wall of this case is {required[0]:g} x {required[1]:g} m"

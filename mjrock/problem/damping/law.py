@@ -91,7 +91,7 @@ class Groups:
     @classmethod
     def stack(cls, groups: list[Groups]) -> Groups:
         """Many as one, whose fields are arrays of shape (n,)."""
-        return cls(*np.array([[getattr(group, name.name) for group in groups] for name in fields(cls)], dtype=float))
+        return cls(*np.array([[getattr(group, entry.name) for group in groups] for entry in fields(cls)], dtype=float))
 
 
 class Form(Protocol):
@@ -117,7 +117,7 @@ class PowerLaw:
     __repr__ = short_repr
 
     def __post_init__(self) -> None:
-        keep(self, **{part.name: require_real(part.name, getattr(self, part.name)) for part in fields(self)})
+        keep(self, **{entry.name: require_real(entry.name, getattr(self, entry.name)) for entry in fields(self)})
 
     def __call__(self, slenderness: float, k_n: float, e: float) -> float:
         """The damping ratio [-]; `e` is the restitution of this law's own impact."""
@@ -154,24 +154,24 @@ class CornerLaw:
     growth: float
     r_squared: float = math.nan
 
-    def _parts(self, groups: Groups) -> tuple[Numbers, Numbers, Numbers]:
+    def _coefficients_at(self, groups: Groups) -> tuple[Numbers, Numbers, Numbers]:
         w = groups.work
-        most = groups.housner + self.floor * w
-        least = np.maximum(0.0, groups.housner - self.bounce * np.sqrt(w) / groups.slenderness)
+        largest = groups.housner + self.floor * w
+        smallest = np.maximum(0.0, groups.housner - self.bounce * np.sqrt(w) / groups.slenderness)
         steepness = w**self.work_exponent * groups.slenderness**self.slenderness_exponent
-        return most, least, self.scale * steepness * (1 + self.growth * w)
+        return largest, smallest, self.scale * steepness * (1 + self.growth * w)
 
     def xi(self, groups: Groups, loss: Numbers) -> Numbers:
         """As `Form.xi`; infinite where no damping loses as much, zero or less where none loses as little."""
-        most, least, scale = self._parts(groups)
-        left = np.maximum(0.0, most - loss) / (most - least)
+        largest, smallest, scale = self._coefficients_at(groups)
+        remaining = np.maximum(0.0, largest - loss) / (largest - smallest)
         with np.errstate(divide="ignore"):
-            return -scale * np.log(left)
+            return -scale * np.log(remaining)
 
     def loss(self, groups: Groups, xi: Numbers) -> Numbers:
         """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
-        most, least, scale = self._parts(groups)
-        return most - (most - least) * np.exp(-xi / scale)
+        largest, smallest, scale = self._coefficients_at(groups)
+        return largest - (largest - smallest) * np.exp(-xi / scale)
 
 
 @dataclass(frozen=True)
@@ -193,18 +193,18 @@ class BedLaw:
     exponent: float
     r_squared: float = math.nan
 
-    def _parts(self, groups: Groups) -> tuple[Numbers, Numbers]:
+    def _coefficients_at(self, groups: Groups) -> tuple[Numbers, Numbers]:
         w = groups.work
         return self.inertia * groups.housner + self.weight * w, self.scale * w**self.exponent
 
     def xi(self, groups: Groups, loss: Numbers) -> Numbers:
         """As `Form.xi`."""
-        amplitude, scale = self._parts(groups)
+        amplitude, scale = self._coefficients_at(groups)
         return scale * np.expm1(np.minimum(loss / amplitude, 50.0))
 
     def loss(self, groups: Groups, xi: Numbers) -> Numbers:
         """The loss -ln e_2s of a damping ratio, the inverse of `xi`."""
-        amplitude, scale = self._parts(groups)
+        amplitude, scale = self._coefficients_at(groups)
         return amplitude * np.log1p(xi / scale)
 
 
@@ -304,12 +304,12 @@ class DampingLaw:
             keep(self, **{name: (low, high)})
         for part, form in (("base", self.base), ("side", self.side)):
             require_kind(part, form, *FORMS.values())
-            checked = {
+            coefficients = {
                 key: require_within(f"{part}.{key}", value, 0.0 if key in POSITIVE_COEFFICIENTS else -1e6, 1e6)
                 for key, value in asdict(form).items()  # type: ignore[call-overload]
                 if key != "r_squared"
             }
-            keep(self, **{part: replace(form, **checked)})  # type: ignore[type-var]
+            keep(self, **{part: replace(form, **coefficients)})  # type: ignore[type-var]
 
     def __repr__(self) -> str:
         lines = "" if self.points is None else f", {self.points} lines a face"
@@ -337,7 +337,7 @@ class DampingLaw:
         if e.side == 0:
             raise ValueError("side restitution = 0 has no damping ratio; the valid range is -1 <= e_side < 0")
         groups = Groups.from_wall(wall, e, k_n, k_side, amplitude)
-        if outside := self._outside(wall, e, k_n, k_side):
+        if outside := self._values_outside(wall, e, k_n, k_side):
             warn_of(f"{self.name}: outside the range of the fit: {'; '.join(outside)}")
         xi_base = float(self.base.xi(groups, groups.base_loss))
         if self.scalable:
@@ -390,12 +390,12 @@ class DampingLaw:
         low, high = self.reach(wall, k_n, amplitude)
         margin = REACH_MARGIN * (high - low)
         return (
-            not self._outside(wall, e, k_n, k_side)
+            not self._values_outside(wall, e, k_n, k_side)
             and low + margin <= e.base <= high - margin
             and rebound_over_uplift(wall, e, k_n, amplitude) > LEAST_REBOUND
         )
 
-    def _outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> list[str]:
+    def _values_outside(self, wall: Block, e: Restitution, k_n: float, k_side: float | None) -> list[str]:
         """The values that lie outside the fitted ranges, in words."""
         scale = DENSITY * 4 * wall.b * wall.h * wall.base_length / wall.mass if self.scalable else 1.0
         covered = {
@@ -410,8 +410,8 @@ class DampingLaw:
         beyond = []
         for name, (value, factor, (low, high)) in covered.items():
             if not low * (1 - 1e-9) <= value * factor <= high * (1 + 1e-9):
-                at = "" if abs(factor - 1) < 1e-9 else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
-                beyond.append(f"{name} = {value:.4g}{at} not in {low:g} to {high:g}")
+                note = "" if abs(factor - 1) < 1e-9 else f", for a full wall of {DENSITY:g} kg/m3 {value * factor:.4g},"
+                beyond.append(f"{name} = {value:.4g}{note} not in {low:g} to {high:g}")
         return beyond
 
     def save(self, path: str | Path) -> Path:
@@ -421,11 +421,11 @@ class DampingLaw:
             OSError: if the file cannot be written.
         """
         names = [entry.name for entry in fields(self) if entry.name not in ("base", "side", "errors")]
-        made: dict[str, object] = {name: getattr(self, name) for name in names}
+        document: dict[str, object] = {name: getattr(self, name) for name in names}
         for part, form in (("base", self.base), ("side", self.side)):
-            made[part] = {"form": type(form).__name__} | asdict(form)  # type: ignore[call-overload]
-        made |= {"errors": self.errors} if self.errors else {}
-        return write_text(require_path("path", path), toml_text(made))
+            document[part] = {"form": type(form).__name__} | asdict(form)  # type: ignore[call-overload]
+        document |= {"errors": self.errors} if self.errors else {}
+        return write_text(require_path("path", path), toml_text(document))
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -440,8 +440,8 @@ class DampingLaw:
             text = tomllib.loads(require_file(path).read_text(encoding="utf-8"))
             values = text | {key: tuple(value) for key, value in text.items() if isinstance(value, list)}
             for part in ("base", "side"):
-                given = dict(text[part])
-                values[part] = FORMS[require_one_of("form", given.pop("form"), FORMS)](**given)
+                coefficients = dict(text[part])
+                values[part] = FORMS[require_one_of("form", coefficients.pop("form"), FORMS)](**coefficients)
             return cls(**values)
         except KeyError as error:
             raise ValueError(f"{path} is not a damping law: {error} is missing") from None

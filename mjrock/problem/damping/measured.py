@@ -91,7 +91,7 @@ def measured_contact(
     time = _mean_of(times, confidence, 0.0, math.inf)
     speed = math.sqrt(2 * gravity * release)
     ends = time.value, time.high, time.low
-    k, softest, stiffest = (mass * _frequency(one, e, gravity, speed) ** 2 for one in ends)
+    k, softest, stiffest = (mass * _frequency(duration, e, gravity, speed) ** 2 for duration in ends)
     omega = math.sqrt(k / mass)
     xi = falling_damping(max(e, LOWEST_RESTITUTION), min(gravity / (omega * speed), MOST_PULL))
     return MeasuredContact(e, interval, xi, k, (softest, stiffest), len(ratios), len(times))
@@ -146,10 +146,10 @@ def _compliance(E: Modulus, nu: Ratio) -> float:
 
 def _ratios(heights: object) -> tuple[Array, float]:
     """e of every bounce [-], and the mean height of the releases [m]."""
-    several: Iterable[object] = [heights]
+    rows: Iterable[object] = [heights]
     if isinstance(heights, list | tuple | np.ndarray) and is_iterable(heights) and any(map(is_iterable, heights)):
-        several = heights
-    drops = [require_row("heights", row, "height") for row in several]
+        rows = heights
+    drops = [require_row("heights", row, "height") for row in rows]
     for drop in drops:
         if len(drop) < 2:
             raise ValueError(f"heights of a drop are {drop.tolist()}; a release and at least one bounce are needed")
@@ -169,15 +169,15 @@ class Mean(NamedTuple):
     high: float
 
 
-def _mean_of(values: Array, level: float, least: float, most: float) -> Mean:
+def _mean_of(values: Array, level: float, lowest: float, highest: float) -> Mean:
     """Mean, and Student's interval of the mean within what is possible."""
     mean = float(values.mean())
     if len(values) < 2:
-        return Mean(mean, least, most)
+        return Mean(mean, lowest, highest)
     from scipy.special import stdtrit
 
     half = float(stdtrit(len(values) - 1, 0.5 + level / 2) * values.std(ddof=1) / math.sqrt(len(values)))
-    return Mean(mean, max(least, mean - half), min(most, mean + half))
+    return Mean(mean, max(lowest, mean - half), min(highest, mean + half))
 
 
 def _frequency(time: float, e: float, gravity: float, speed: float) -> float:
@@ -187,8 +187,8 @@ def _frequency(time: float, e: float, gravity: float, speed: float) -> float:
     omega = math.pi / time
     for _ in range(100):
         pull = min(gravity / (omega * speed), MOST_PULL)
-        new = falling_rebound(falling_damping(max(e, LOWEST_RESTITUTION), pull), pull).duration / time
-        if not new < math.inf or abs(new - omega) <= 1e-10 * omega:
+        next_omega = falling_rebound(falling_damping(max(e, LOWEST_RESTITUTION), pull), pull).duration / time
+        if not next_omega < math.inf or abs(next_omega - omega) <= 1e-10 * omega:
             break
-        omega = new
+        omega = next_omega
     return omega

@@ -142,7 +142,7 @@ class Restitution:
                 )
             if wall.inset or not wall.is_plain or (stop_top is not None and stop_top < 2 * wall.h):
                 top = 2 * wall.h if stop_top is None else stop_top
-                base, side = _base(wall), _side(wall, top)
+                base, side = _base_restitution(wall), _side_restitution(wall, top)
                 if side > 1:
                     raise ValueError(
                         f"top of the side stop = {top:g} m is so low that the wall turns on over it, e_side = "
@@ -248,8 +248,8 @@ AnyRestitution = Restitution | ScatteredRestitution
 def impacts_of(e: AnyRestitution, *, lumped: bool) -> Callable[[int], Array]:
     """A function that gives e of a number of next impacts of a run [-]; `lumped` of the sequence base, side, base."""
     if isinstance(e, Restitution) or e.sd == 0:
-        same = e.lumped if lumped else e.base
-        return lambda count: np.full(count, same)
+        mean = e.lumped if lumped else e.base
+        return lambda count: np.full(count, mean)
     random = np.random.default_rng(e.seed)
     return lambda count: _draws(e, random, count)[:, : 3 if lumped else 1].prod(axis=1)
 
@@ -257,23 +257,23 @@ def impacts_of(e: AnyRestitution, *, lumped: bool) -> Callable[[int], Array]:
 def _draws(e: ScatteredRestitution, random: np.random.Generator, count: int) -> Array:
     """Draws for base, side and base, shape (count, 3)."""
     means = np.array([e.mean.base, e.mean.side, e.mean.base])
-    found, spread = np.tile(means, (count, 1)), means != 0
+    values, scattered = np.tile(means, (count, 1)), means != 0
     if e.sd > 0:
-        size = np.abs(means[spread])
+        size = np.abs(means[scattered])
         strength = size * (1 - size) / e.sd**2 - 1
         drawn = random.beta(size * strength, (1 - size) * strength, (count, len(size)))
-        found[:, spread] = np.sign(means[spread]) * drawn
-    return found
+        values[:, scattered] = np.sign(means[scattered]) * drawn
+    return values
 
 
-def _base(wall: Block) -> float:
+def _base_restitution(wall: Block) -> float:
     """e_2s of any wall, see `Restitution.from_geometry`."""
     outer, inner = (wall.half_base - side * wall.centroid_offset for side in (1, -1))
-    kept = wall.inertia + wall.mass * (wall.centroid_height**2 - outer * inner)
-    return kept / math.sqrt(wall.inertia_about(1) * wall.inertia_about(-1))
+    momentum = wall.inertia + wall.mass * (wall.centroid_height**2 - outer * inner)
+    return momentum / math.sqrt(wall.inertia_about(1) * wall.inertia_about(-1))
 
 
-def _side(wall: Block, top: float) -> float:
+def _side_restitution(wall: Block, top: float) -> float:
     """e_side of any wall against a stop that reaches to `top`, see `Restitution.from_geometry`."""
     edge, face = wall.half_base + wall.centroid_offset, wall.centroid_offset - wall.inner_face(top)
     z, below = wall.centroid_height, wall.centroid_height - top

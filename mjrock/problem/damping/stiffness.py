@@ -71,8 +71,8 @@ def wall_stiffness(E: Modulus, wall: Block, points: PointCount = 2) -> float:
     """
     require_kind("wall", wall, Block)
     x, widths = contact_lines(2 * wall.half_base, points)
-    fewer = 2 * wall.half_base**3 / float((widths * x**2).sum())
-    return require_stiffness("k_n = E / H", fewer * E / (2 * wall.h))
+    lines_factor = 2 * wall.half_base**3 / float((widths * x**2).sum())
+    return require_stiffness("k_n = E / H", lines_factor * E / (2 * wall.h))
 
 
 def layered_stiffness(*stiffnesses: float) -> float:
@@ -114,8 +114,8 @@ def measured_stiffness(
     require_kind("wall", wall, Block)
     omega = 2 * math.pi * frequency
     unit = reference_frequency(wall, UNIT_STIFFNESS, points) ** 2 / UNIT_STIFFNESS
-    falling = wall.weight * wall.centroid_height / base_inertia(wall)
-    return require_stiffness("k_n of the measured frequency", (omega**2 + falling) / unit)
+    gravity_term = wall.weight * wall.centroid_height / base_inertia(wall)
+    return require_stiffness("k_n of the measured frequency", (omega**2 + gravity_term) / unit)
 
 
 Range = tuple[float, float]
@@ -160,7 +160,7 @@ class MasonryTypes(Mapping[str, MasonryType]):
     """Types of masonry by name, that cannot be changed."""
 
     def __init__(self, types: Iterable[MasonryType]) -> None:
-        self._types = {kind.name: kind for kind in types}
+        self._types = {masonry_type.name: masonry_type for masonry_type in types}
 
     def __getitem__(self, name: str) -> MasonryType:
         if name not in self._types:
@@ -263,30 +263,30 @@ def stiffness_range(
     share = lines_over_bed(wall, points)
     if E is None and frequency is None:
         raise ValueError("E and frequency are None: a joint alone is an upper bound of k_n; give one of them")
-    estimate = None if E is None else _of_modulus(wall, E, joint, share)
+    estimate = None if E is None else _range_of_modulus(wall, E, joint, share)
     if estimate is None and joint is not None:
         raise ValueError("joint needs E of the wall beside it; a measured frequency contains the joint already")
     if frequency is None:
         assert estimate is not None
         return estimate
-    ends = _pair("frequency", frequency, 1e-3, 1e4, "Hz", 0.1)
+    ends = _ends_of_range("frequency", frequency, 1e-3, 1e4, "Hz", 0.1)
     low, high = (measured_stiffness(wall, end, points) for end in ends)
     best = measured_stiffness(wall, math.sqrt(ends[0] * ends[1]), points)
-    found = StiffnessRange(low, best, high, f"a frequency of {ends[0]:.3g} to {ends[1]:.3g} Hz")
+    measured = StiffnessRange(low, best, high, f"a frequency of {ends[0]:.3g} to {ends[1]:.3g} Hz")
     if estimate is not None and not (low <= estimate.high and estimate.low <= high):
         warn_of(
             f"the measured frequency gives k_n = {low:.2g} to {high:.2g} N/m3, and {estimate.basis} gives "
             f"{estimate.low:.2g} to {estimate.high:.2g} N/m3; is the wall detached, and the frequency in Hz?"
         )
-    return found
+    return measured
 
 
-def _of_modulus(wall: Block, E: object, joint: object, share: float) -> StiffnessRange:
+def _range_of_modulus(wall: Block, E: object, joint: object, share: float) -> StiffnessRange:
     """The range that the modulus of the wall and a joint leave open."""
     if isinstance(E, MasonryType):
         moduli, basis = E.E, f"E of {E.name} ({E.source})"
     else:
-        moduli = _pair("modulus E", E, 1e5, 1e12, "Pa", 0.0)
+        moduli = _ends_of_range("modulus E", E, 1e5, 1e12, "Pa", 0.0)
         basis = f"E = {moduli[0]:.3g} to {moduli[1]:.3g} Pa"
     column, edge = 3 * moduli[0] / (2 * wall.h), moduli[1] / (2 * wall.b)
     low, high = min(column, edge), max(column, edge)
@@ -300,14 +300,14 @@ def _of_modulus(wall: Block, E: object, joint: object, share: float) -> Stiffnes
     return StiffnessRange(share * low, share * math.sqrt(low * high), share * high, basis)
 
 
-def _pair(name: str, value: object, least: float, most: float, unit: str, known: float) -> Range:
+def _ends_of_range(name: str, value: object, lowest: float, highest: float, unit: str, tolerance: float) -> Range:
     """Low and high end of a quantity; a single number is widened by the share to which it is known."""
     if not isinstance(value, tuple | list):
-        number = require_within(name, value, least, most, unit)
-        return (1 - known) * number, (1 + known) * number
+        number = require_within(name, value, lowest, highest, unit)
+        return (1 - tolerance) * number, (1 + tolerance) * number
     if len(value) != 2:
         raise ValueError(f"{name} = {shown(value)} is neither a number nor its low and high end")
-    low, high = (require_within(name, end, least, most, unit) for end in value)
+    low, high = (require_within(name, end, lowest, highest, unit) for end in value)
     if not low <= high:
         raise ValueError(f"{name} = {shown(value)} is not a low end and a high end, in this order")
     return low, high
@@ -334,9 +334,9 @@ def crushed_inset(wall: Block, f_c: float, load: float = 0.0) -> float:
     force = wall.weight + require_within("load", require_real("load", load), 0.0, 1e9, "N")
     inset = 2 * force / (3 * f_c * wall.base_length)
     if not inset < wall.b:
-        least = 2 * force / (3 * wall.b * wall.base_length)
+        weakest = 2 * force / (3 * wall.b * wall.base_length)
         raise ValueError(
             f"compressive strength f_c = {f_c:g} Pa cannot carry the wall on its edge; the valid range is above "
-            f"{least:.3g} Pa"
+            f"{weakest:.3g} Pa"
         )
     return inset

@@ -29,7 +29,7 @@ from ..ground.motion import GroundMotion
 from ..wall.case import Case
 from ..wall.effect import Anchored, Effect, require_only
 from ..wall.effects import EFFECT_KINDS, Carrying, Load
-from ..wall.plausibility import LARGEST_PEAK_IN_G, NEGLIGIBLE_SHARE, HeldSize, Subject, of_effects, of_motion
+from ..wall.plausibility import LARGEST_PEAK_IN_G, NEGLIGIBLE_SHARE, HeldSize, Subject, effect_doubts, record_doubts
 from .actuator import Actuator
 from .blocks.joints import Joint
 from .blocks.joints_in_space import SpaceJoint
@@ -60,8 +60,10 @@ def doubts(case: MasonryCase) -> list[str]:
     """What is odd about a case, in words; empty for a plausible one. For a wall see `problem.wall.plausibility`."""
     masonry = case.masonry
     mass = sum(masonry.blocks[i].mass for i in masonry.free)
-    messages = of_motion(case.motion, case.duration, "masonry", sustained_acceleration(case))
-    messages += of_effects(case.effects, Subject("masonry", "its block", mass), lambda link: _size_along(masonry, link))
+    messages = record_doubts(case.motion, case.duration, "masonry", sustained_acceleration(case))
+    messages += effect_doubts(
+        case.effects, Subject("masonry", "its block", mass), lambda link: _size_along(masonry, link)
+    )
     return messages + [
         doubt for name, jack in case.actuators.items() if (doubt := _doubt_of(name, jack, masonry, mass))
     ]

@@ -203,7 +203,7 @@ class VerticalBending:
         sway = np.where(above, ratio * (h - weights.z), weights.z)
         return weights, sway, np.where(above, at.edge - at.x + ratio * (weights.x - at.x), at.edge - weights.x)
 
-    def _starts(self, crack: float) -> float:
+    def _multiplier_of(self, crack: float) -> float:
         """The multiplier of a crack at a height [m]."""
         weights, sway, rise = self._rates(crack)
         return float(weights.weight @ rise / (weights.inertia @ sway))
@@ -222,7 +222,7 @@ class VerticalBending:
         ends = [low, *sorted({z for z in steps if low < z < high}), high]
         options = {"xatol": 1e-9 * height}
         minima = [
-            scipy.optimize.minimize_scalar(self._starts, bounds=stretch, method="bounded", options=options)
+            scipy.optimize.minimize_scalar(self._multiplier_of, bounds=stretch, method="bounded", options=options)
             for stretch in pairwise(ends)
         ]
         return float(min(minima, key=lambda minimum: float(minimum.fun)).x)
@@ -230,7 +230,7 @@ class VerticalBending:
     @property
     def multiplier(self) -> float:
         """alpha_0, at which the wall begins to bend [-]."""
-        return self._starts(self.crack_height)
+        return self._multiplier_of(self.crack_height)
 
     @property
     def participation(self) -> float:
@@ -260,19 +260,19 @@ class VerticalBending:
         rise, sway, moved = (np.zeros_like(theta) for _ in range(3))
         for weight, inertia, px, pz in zip(*weights, strict=True):
             if pz > z:
-                beside, high = px - at.x, pz - z
-                moves = x + beside * (cosine_up - 1) - high * sine_up
-                outwards = across - rate * (beside * sine_up + high * cosine_up)
-                upwards = up + rate * (beside * cosine_up - high * sine_up)
+                lever, high = px - at.x, pz - z
+                shift = x + lever * (cosine_up - 1) - high * sine_up
+                outwards = across - rate * (lever * sine_up + high * cosine_up)
+                upwards = up + rate * (lever * cosine_up - high * sine_up)
             else:
-                beside = at.edge - px
-                moves = beside * (1 - cosine) + pz * sine
-                outwards, upwards = beside * sine + pz * cosine, beside * cosine - pz * sine
-            rise, sway, moved = rise + weight * upwards, sway + inertia * outwards, moved + inertia * moves
+                lever = at.edge - px
+                shift = lever * (1 - cosine) + pz * sine
+                outwards, upwards = lever * sine + pz * cosine, lever * cosine - pz * sine
+            rise, sway, moved = rise + weight * upwards, sway + inertia * outwards, moved + inertia * shift
         multiplier, moved = rise / sway, moved / weights.inertia.sum()
         end = int(np.flatnonzero(multiplier <= 0)[0])
-        part = multiplier[end - 1] / (multiplier[end - 1] - multiplier[end])
-        last = [row[end - 1] + part * (row[end] - row[end - 1]) for row in (theta, moved)]
+        share = multiplier[end - 1] / (multiplier[end - 1] - multiplier[end])
+        last = [row[end - 1] + share * (row[end] - row[end - 1]) for row in (theta, moved)]
         return BendingCurve(
             np.append(theta[:end], last[0]), np.append(moved[:end], last[1]), np.append(multiplier[:end], 0.0)
         )
@@ -281,7 +281,7 @@ class VerticalBending:
     def floor_depth(self) -> float:
         """Depth of a floor with the mass of the load at some 2500 kg/m3 [m], once to five times the thickness."""
         thickness = self._top[1]
-        return min(max(self.load / (self._specific * TYPICAL), thickness), DEEPEST_FLOOR * thickness)
+        return min(max(self.load / (self._weight_factor * TYPICAL), thickness), DEEPEST_FLOOR * thickness)
 
     @property
     def floor_density(self) -> float:
@@ -291,13 +291,13 @@ class VerticalBending:
             ValueError: for a load that is too small or too large for a block.
         """
         thickness = self._top[1]
-        least = self._specific * thickness * DENSITIES.low
-        most = self._specific * DEEPEST_FLOOR * thickness * DENSITIES.high
-        load = require_within("load", self.load, least, most, "N")
-        return min(max(load / (self._specific * self.floor_depth), DENSITIES.low), DENSITIES.high)
+        lightest = self._weight_factor * thickness * DENSITIES.low
+        heaviest = self._weight_factor * DEEPEST_FLOOR * thickness * DENSITIES.high
+        load = require_within("load", self.load, lightest, heaviest, "N")
+        return min(max(load / (self._weight_factor * self.floor_depth), DENSITIES.low), DENSITIES.high)
 
     @property
-    def _specific(self) -> float:
+    def _weight_factor(self) -> float:
         """Weight of a floor over its depth and density [m3/s2]."""
         return GRAVITY * self.wall.length * (self.floor_ends[1] - self.floor_ends[0])
 
@@ -397,14 +397,14 @@ class HorizontalBending:
         """
         t, parts = 2 * self.wall.b, np.array(self.parts)[:, None]
         rise = t * np.cos(np.linspace(0.0, 0.5 * math.pi, CURVE_POINTS))  # of the arch
-        along = np.sqrt(t**2 + parts**2 - rise**2)  # of each body, from edge to edge
-        theta = np.arctan2(t, parts) - np.arctan2(rise, along)
+        spans = np.sqrt(t**2 + parts**2 - rise**2)  # of each body, from edge to edge
+        theta = np.arctan2(t, parts) - np.arctan2(rise, spans)
         share = parts / self.wall.length
-        moved = (share * (0.5 * t * (1 - np.cos(theta)) + 0.5 * parts * np.sin(theta))).sum(axis=0)
-        sway = (share * (0.5 * t * np.sin(theta) + 0.5 * parts * np.cos(theta)) / along).sum(axis=0)
-        multiplier = self.thrust * (rise / along).sum(axis=0) / (self.wall.weight * sway)
+        displacement = (share * (0.5 * t * (1 - np.cos(theta)) + 0.5 * parts * np.sin(theta))).sum(axis=0)
+        sway = (share * (0.5 * t * np.sin(theta) + 0.5 * parts * np.cos(theta)) / spans).sum(axis=0)
+        multiplier = self.thrust * (rise / spans).sum(axis=0) / (self.wall.weight * sway)
         multiplier[-1] = 0.0
-        return BendingCurve(theta[0], moved, multiplier)
+        return BendingCurve(theta[0], displacement, multiplier)
 
     @property
     def tie(self) -> Tie:

@@ -166,8 +166,8 @@ class Block:
             length, density: as of `Block`.
         """
         alpha = math.atan(1 / slenderness)
-        most = min(10 / math.sin(alpha), 100 / math.cos(alpha))
-        R = require_within("half diagonal R", R, max(1e-3 / math.sin(alpha), 5e-3 / math.cos(alpha)), most, "m")
+        largest = min(10 / math.sin(alpha), 100 / math.cos(alpha))
+        R = require_within("half diagonal R", R, max(1e-3 / math.sin(alpha), 5e-3 / math.cos(alpha)), largest, "m")
         return cls(b=R * math.sin(alpha), h=R * math.cos(alpha), length=length, density=density)
 
     def __repr__(self) -> str:
@@ -179,9 +179,9 @@ class Block:
             parts.append(f"{self.profile[-1][1]:.6g} m thick at the top{outside}")
         if self.gable:
             parts.append(f"gable of {self.gable.height:.6g} m")
-        for name, many in (("opening", self.openings), ("added mass", self.masses)):
-            if many:
-                parts.append(f"{len(many)} {name}{'' if len(many) == 1 else 's' if name == 'opening' else 'es'}")
+        for name, items in (("opening", self.openings), ("added mass", self.masses)):
+            if items:
+                parts.append(f"{len(items)} {name}{'' if len(items) == 1 else 's' if name == 'opening' else 'es'}")
         return f"<Block {', '.join(parts)}: {self.mass:.6g} kg, alpha = {self.alpha:.4g} rad, p = {self.p:.4g} rad/s>"
 
     @property
@@ -210,13 +210,13 @@ class Block:
         return -self.b if not self.profile or self.plumb == "inner" else float(self.section.faces(np.array(z))[0])
 
     @cached_property
-    def _parts(self) -> Moments:
+    def _moments(self) -> Moments:
         """Mass and its moments of all that is not a plain rectangle [kg, kg m, kg m2]."""
         total = [self.density * value for value in moments(self.section, self.front)]
-        for added in self.masses:
-            x, z = added.offset, added.height
+        for mass in self.masses:
+            x, z = mass.offset, mass.height
             for i, value in enumerate((1.0, x, z, x * x, z * z)):
-                total[i] += added.mass * value
+                total[i] += mass.mass * value
         return Moments(*total)
 
     @property
@@ -227,12 +227,12 @@ class Block:
     @property
     def centroid_height(self) -> float:
         """Height of the centroid above the base [m]; h for a full rectangle."""
-        return self.h if self.is_plain else self._parts.z / self._parts.volume
+        return self.h if self.is_plain else self._moments.z / self._moments.volume
 
     @property
     def centroid_offset(self) -> float:
         """Distance of the centroid from the middle of the base, outwards [m]; 0 for a full rectangle."""
-        return 0.0 if self.is_plain or not (self.profile or self.masses) else self._parts.x / self._parts.volume
+        return 0.0 if self.is_plain or not (self.profile or self.masses) else self._moments.x / self._moments.volume
 
     @property
     def lever(self) -> float:
@@ -263,7 +263,7 @@ class Block:
     @property
     def mass(self) -> float:
         """Mass [kg]."""
-        return 4 * self.b * self.h * self.length * self.density if self.is_plain else self._parts.volume
+        return 4 * self.b * self.h * self.length * self.density if self.is_plain else self._moments.volume
 
     @property
     def weight(self) -> float:
@@ -275,7 +275,7 @@ class Block:
         """Moment of inertia about the centroid [kg m2]."""
         if self.is_plain:
             return self.mass * (self.b**2 + self.h**2) / 3
-        about_base = self._parts.xx + self._parts.zz
+        about_base = self._moments.xx + self._moments.zz
         return about_base - self.mass * (self.centroid_offset**2 + self.centroid_height**2)
 
     @property

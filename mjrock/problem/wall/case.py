@@ -214,8 +214,8 @@ class Case(Carrying):
         wall, top = self.wall, self.stop_top
         face = -wall.inner_face(top)
         weight = of_force(wall.centroid_offset, wall.centroid_height - top, 0.0, wall.weight, face)
-        over = weight.plus(self._forces(top, face)).inner
-        return min(max(over.alpha, wall.alpha), ON_ITS_FACE) if over.Q > 0 else ON_ITS_FACE
+        about_stop = weight.plus(self._forces(top, face)).inner
+        return min(max(about_stop.alpha, wall.alpha), ON_ITS_FACE) if about_stop.Q > 0 else ON_ITS_FACE
 
     def _forces(self, level: float, half_base: float) -> list[Restoring]:
         """Restoring moments of loads and thrusts about two edges at a height and a distance from the middle [m]."""
@@ -309,10 +309,10 @@ class Case(Carrying):
             return np.asarray(moment.at(phi) + sum(pull.moment(phi) for pull in self.pulls) > 0)
 
         phi = np.linspace(0.0, ON_ITS_FACE, 2001)
-        back = 1 + np.flatnonzero(restores(phi[1:]))
-        if not back.size or back[-1] == len(phi) - 1:
-            return float(phi[back[-1]]) if back.size else 0.0
-        low, high = (float(phi[back[-1] + i]) for i in (0, 1))
+        restored = 1 + np.flatnonzero(restores(phi[1:]))
+        if not restored.size or restored[-1] == len(phi) - 1:
+            return float(phi[restored[-1]]) if restored.size else 0.0
+        low, high = (float(phi[restored[-1] + i]) for i in (0, 1))
         for _ in range(50):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if restores(np.array([middle]))[0] else (low, middle)

@@ -74,11 +74,11 @@ class EarthPressure(CombinedEffect):
     def _coefficient(self, sense: float) -> float:
         """K of the active (1) or the passive pressure (-1)."""
         phi, delta, theta = self.friction_angle, self.wall_friction, self.inclination
-        over = math.cos(delta + theta)
+        cosine = math.cos(delta + theta)
         root = math.sqrt(
-            math.sin(phi + delta) * math.sin(phi - theta - sense * self.slope) / (over * math.cos(self.slope))
+            math.sin(phi + delta) * math.sin(phi - theta - sense * self.slope) / (cosine * math.cos(self.slope))
         )
-        return math.cos(phi - theta) ** 2 / (math.cos(theta) * over * (1 + sense * root) ** 2)
+        return math.cos(phi - theta) ** 2 / (math.cos(theta) * cosine * (1 + sense * root) ** 2)
 
     @property
     def active(self) -> float:
@@ -98,10 +98,10 @@ class EarthPressure(CombinedEffect):
     @property
     def level(self) -> float:
         """Height at which it acts [m]: H / 3 of what acts without an earthquake, and H / 2 of what this adds."""
-        still = EarthPressure(
+        static_force = EarthPressure(
             self.height, self.friction_angle, self.density, wall_friction=self.wall_friction, slope=self.slope
         ).force
-        return (still * self.height / 3 + (self.force - still) * self.height / 2) / self.force
+        return (static_force * self.height / 3 + (self.force - static_force) * self.height / 2) / self.force
 
     def on(self, wall: Block) -> tuple[Thrust, Load]:
         """The active force on the whole length of a wall, as effects of a `Case`.

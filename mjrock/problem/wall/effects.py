@@ -158,12 +158,12 @@ class Thrust(Effect):
     direction: Point | None = field(default=None, kw_only=True, metadata=IN_SPACE)
 
     def __post_init__(self) -> None:
-        if (given := place_or_none("direction of the thrust", self.direction, least=3)) is not None:
-            length = math.hypot(*given)
+        if (vector := place_or_none("direction of the thrust", self.direction, least=3)) is not None:
+            length = math.hypot(*vector)
             if not length > 1e-9:
-                name = f"direction of the thrust = {given}"
+                name = f"direction of the thrust = {vector}"
                 raise ValueError(f"{name} has no length; valid vectors are longer than 1e-9")
-            keep(self, direction=(given[0] / length, given[1] / length, given[2] / length))
+            keep(self, direction=(vector[0] / length, vector[1] / length, vector[2] / length))
         super().__post_init__()
 
     @property
@@ -352,7 +352,7 @@ class Carrying(NotebookPicture):
     def _keep_sequence(self, *further: type[Effect]) -> None:
         """Keep the effects, or a single one, as a tuple. They are of `EFFECT_KINDS` or `further` ones."""
         kinds = (*EFFECT_KINDS, *further)
-        given = (self.effects,) if isinstance(self.effects, kinds) else self.effects
+        effects = (self.effects,) if isinstance(self.effects, kinds) else self.effects
         names = [kind.__name__ for kind in kinds]
-        require_sequence("effects", given, f"a sequence of {', '.join(names[:-1])} or {names[-1]}")
-        keep(self, effects=tuple(given))
+        require_sequence("effects", effects, f"a sequence of {', '.join(names[:-1])} or {names[-1]}")
+        keep(self, effects=tuple(effects))

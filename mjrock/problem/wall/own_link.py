@@ -23,9 +23,9 @@ class OwnLinkLaw(UserLaw):
     methods: ClassVar[dict[str, int]] = {"force": 2, "energy": 1, "remember": 1}
 
     @classmethod
-    def answering(cls, made: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
+    def answering(cls, compile_method: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
         """Its dashpot has what a rate adds to the force."""
-        force, energy, remember = (made(getattr(cls, name)) for name in cls.methods)
+        force, energy, remember = (compile_method(getattr(cls, name)) for name in cls.methods)
         remembers = bool(cls.memory)
 
         def answer(row: Any, u: float, rate: float) -> None:

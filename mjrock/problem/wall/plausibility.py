@@ -78,10 +78,10 @@ def warn_if_still(is_still: bool, *, forces: bool = False) -> None:
 
 def doubts(case: Any) -> list[str]:
     """What is odd about a `mjrock.Case`, in words; empty for a plausible one."""
-    return [*_of_release(case), *_of_motion(case), *_of_effects(case), *_of_free_part(case)]
+    return [*_release_doubts(case), *_motion_doubts(case), *_wall_effect_doubts(case), *_free_part_doubts(case)]
 
 
-def _of_release(case: Any) -> list[str]:
+def _release_doubts(case: Any) -> list[str]:
     limit = case.overturning_rotation
     if abs(case.theta0) > RELEASE_BEYOND * limit > 0 and (case.theta0 > 0 or not case.lopsided):
         return [
@@ -90,22 +90,22 @@ def _of_release(case: Any) -> list[str]:
         ]
     moment = case.restoring.towards(case.direction)
     if case.released_outwards and not case.pulls and moment.alpha > 0:
-        most = float(moment.energy(moment.alpha))
-        if case.release_energy > RELEASE_SPEED_BEYOND**2 * most:
-            speed = abs(case.omega0) / math.sqrt(case.release_energy / most)
+        energy_to_overturn = float(moment.energy(moment.alpha))
+        if case.release_energy > RELEASE_SPEED_BEYOND**2 * energy_to_overturn:
+            speed = abs(case.omega0) / math.sqrt(case.release_energy / energy_to_overturn)
             return [
                 f"omega0 = {case.omega0:g} rad/s: {speed:.3g} rad/s overturn the wall already; velocities are in rad/s"
             ]
     return []
 
 
-def _of_motion(case: Any) -> list[str]:
+def _motion_doubts(case: Any) -> list[str]:
     start = max(case.restoring.outer.P, 0.0) / (case.wall.weight * case.wall.centroid_height)
     at_rest = not case.omega0 and not case.theta0 and case.vertical is None
-    return of_motion(case.motion, case.duration, "wall", start if at_rest else math.inf)
+    return record_doubts(case.motion, case.duration, "wall", start if at_rest else math.inf)
 
 
-def of_motion(motion: GroundMotion | None, duration: float, label: str, start: float) -> list[str]:
+def record_doubts(motion: GroundMotion | None, duration: float, label: str, start: float) -> list[str]:
     """What is odd about the record of a run of a duration [s].
 
     Args:
@@ -131,13 +131,13 @@ def of_motion(motion: GroundMotion | None, duration: float, label: str, start: f
     return messages
 
 
-def _of_effects(case: Any) -> list[str]:
+def _wall_effect_doubts(case: Any) -> list[str]:
     def size_of(link: Anchored) -> HeldSize:
         b, opening = case.block.b, max(case.restoring.outer.alpha, case.wall.alpha)
         pull = TiePull.from_tie(link, case.block)._replace(reach=link.span)
         return HeldSize(2 * b, float(pulled(pull, opening, 1.0)[0]))
 
-    return of_effects(case.effects, Subject("wall", "the wall", case.block.mass, LEAST_OF_WALL), size_of)
+    return effect_doubts(case.effects, Subject("wall", "the wall", case.block.mass, LEAST_OF_WALL), size_of)
 
 
 class Subject(NamedTuple):
@@ -163,11 +163,11 @@ class HeldSize(NamedTuple):
     opening: float
 
 
-HeldBy = Callable[[Anchored], HeldSize]
+HeldSizeOf = Callable[[Anchored], HeldSize]
 """The size of what a link holds."""
 
 
-def of_effects(effects: Sequence[Effect], subject: Subject, size_of: HeldBy) -> list[str]:
+def effect_doubts(effects: Sequence[Effect], subject: Subject, size_of: HeldSizeOf) -> list[str]:
     """What is odd about effects."""
     messages = []
     weight = subject.mass * GRAVITY
@@ -175,19 +175,21 @@ def of_effects(effects: Sequence[Effect], subject: Subject, size_of: HeldBy) -> 
         name = f"effects[{i}], {type(effect).__name__}"
         if isinstance(effect, Thrust | Load):
             if 0 < abs(effect.force) < subject.least * weight:
-                messages.append(_against_weight(name, "force", effect.force, subject, "kN"))
+                messages.append(_weight_doubt(name, "force", effect.force, subject, "kN"))
             elif abs(effect.force) > EXCESSIVE * weight:
-                messages.append(_against_weight(name, "force", effect.force, subject, "N"))
+                messages.append(_weight_doubt(name, "force", effect.force, subject, "N"))
         elif isinstance(effect, AddedMass) and 0 < effect.mass < subject.least * subject.mass:
             messages.append(
                 f"{name}: mass = {effect.mass:g} kg, that of the {subject.label} {subject.mass:.3g} kg: is it in t?"
             )
         elif isinstance(effect, Anchored):
-            messages += filter(None, (of(name, effect, subject, size_of) for of in (_of_dashpot, _of_spring)))
+            messages += filter(
+                None, (doubt(name, effect, subject, size_of) for doubt in (_dashpot_doubt, _spring_doubt))
+            )
     return messages
 
 
-def _of_free_part(case: Any) -> list[str]:
+def _free_part_doubts(case: Any) -> list[str]:
     """Whether the part above the highest tie would rock before the tied wall does."""
     wall, highest = case.wall, max((tie.height for tie in case.each(Tie)), default=math.inf)
     if highest >= LOW_TIE * 2 * wall.h:
@@ -206,33 +208,33 @@ def _of_free_part(case: Any) -> list[str]:
     ]
 
 
-def _of_spring(name: str, link: Anchored, subject: Subject, size_of: HeldBy) -> str:
+def _spring_doubt(name: str, link: Anchored, subject: Subject, size_of: HeldSizeOf) -> str:
     """At most one doubt about the spring of a link and its limits, empty where there is none."""
     law, limit, weight = link.law, link.limit, subject.mass * GRAVITY
     if not law.k > 0:
         return ""
     if law.strength < subject.least * weight:
-        return _against_weight(name, limit, law.strength, subject, "kN")
+        return _weight_doubt(name, limit, law.strength, subject, "kN")
     if law.k > STIFFEST:
         return f"{name}: stiffness = {law.k:g} N/m is above {STIFFEST:g} N/m: is it a modulus E in Pa?"
-    thickness, opens = size_of(link)
+    thickness, opening = size_of(link)
     if math.isfinite(law.strength) and law.strength / law.k > thickness:
         return (
             f"{name} yields at an elongation of {law.strength / law.k:.3g} m, and {subject.part} is {thickness:g} m "
             "thick: is its stiffness in N/m?"
         )
     if math.isfinite(law.strength) and law.strength > EXCESSIVE * weight:
-        return _against_weight(name, limit, law.strength, subject, "N, and no stress in Pa")
+        return _weight_doubt(name, limit, law.strength, subject, "N, and no stress in Pa")
     for argument, length in (("slack", law.reach - link.span), ("ultimate", law.ultimate)):
-        if math.inf > length > opens > 0:
+        if math.inf > length > opening > 0:
             return (
-                f"{name}: {argument} = {length:g} m, and where it is held the {subject.label} opens by {opens:.3g} m "
+                f"{name}: {argument} = {length:g} m, and where it is held the {subject.label} opens by {opening:.3g} m "
                 f"until it overturns: is the {argument} in m?"
             )
     return ""
 
 
-def _of_dashpot(name: str, link: Anchored, subject: Subject, size_of: HeldBy) -> str:
+def _dashpot_doubt(name: str, link: Anchored, subject: Subject, size_of: HeldSizeOf) -> str:
     """A doubt about the dashpot of a link, by its force at the speed sqrt(g t) of a wall of thickness t that falls."""
     speed, weight = math.sqrt(GRAVITY * size_of(link).thickness), subject.mass * GRAVITY
     force = resistance(link.law, speed)
@@ -247,6 +249,6 @@ def _of_dashpot(name: str, link: Anchored, subject: Subject, size_of: HeldBy) ->
     )
 
 
-def _against_weight(name: str, field: str, value: float, subject: Subject, unit: str) -> str:
+def _weight_doubt(name: str, field: str, value: float, subject: Subject, unit: str) -> str:
     weight = f"{subject.mass * GRAVITY:.3g} N"
     return f"{name}: {field} = {value:g} N, and the {subject.label} weighs {weight}: is it in {unit}?"

@@ -124,12 +124,12 @@ class Face(NamedTuple):
         """Sides of blocks in space, those of as many corners at once."""
         faces, counts = dict[int, Face](), np.array([len(side.corners) for side in sides])
         for count in np.unique(counts):
-            which = np.flatnonzero(counts == count).tolist()
-            corners, normals = (np.array([getattr(sides[i], name) for i in which]) for name in ("corners", "normal"))
+            numbers = np.flatnonzero(counts == count).tolist()
+            corners, normals = (np.array([getattr(sides[i], name) for i in numbers]) for name in ("corners", "normal"))
             edge_normals = cross_in_space(np.roll(corners, -1, axis=1) - corners, normals[:, None])
             edge_normals /= np.linalg.norm(edge_normals, axis=2)[..., None]
-            for i, own in zip(which, edge_normals, strict=True):
-                faces[i] = cls(sides[i].corners, sides[i].normal, own)
+            for i, normals_of_edges in zip(numbers, edge_normals, strict=True):
+                faces[i] = cls(sides[i].corners, sides[i].normal, normals_of_edges)
         return [faces[i] for i in range(len(sides))]
 
 
@@ -218,9 +218,9 @@ class WallRestGeometry:
         """The wall less its openings, the base as a slab below it, and the side stop as a slab beside it."""
         wall, b = self.wall, self.wall.b
         half, rest = 0.5 * wall.length, in_space(np.array([wall.centroid_offset, wall.centroid_height]))
-        solids = [Solid("wall", 0, 0, rest, parts := parts_of_wall(wall), _met(parts), (), math.hypot(b, wall.h))]
+        solids = [Solid("wall", 0, 0, rest, parts := parts_of_wall(wall), _interior(parts), (), math.hypot(b, wall.h))]
         base = (_slab((-b, -half, half), (0.0, -half, half), [(-3 * b, 3 * b)] * 2),)
-        solids.append(Solid("base", None, -1, np.zeros(3), base, _met(base), (), 0.5 * math.hypot(6 * b, b)))
+        solids.append(Solid("base", None, -1, np.zeros(3), base, _interior(base), (), 0.5 * math.hypot(6 * b, b)))
         if self.stop_top is not None:
             side = tuple(
                 _slab((low, -half, half), (high, -half, half), [(-3 * b, x), (-3 * b, x_high)])
@@ -228,7 +228,7 @@ class WallRestGeometry:
                 if high > low
             )
             size = 0.5 * math.hypot(2 * b, self.stop_top)
-            solids.append(Solid("side", None, -1, np.zeros(3), side, _met(side), (), size))
+            solids.append(Solid("side", None, -1, np.zeros(3), side, _interior(side), (), size))
         return tuple(solids)
 
     @property
@@ -265,7 +265,7 @@ class WallRestGeometry:
         )
 
 
-def _met(parts: Sequence[Convex]) -> tuple[Flags, ...]:
+def _interior(parts: Sequence[Convex]) -> tuple[Flags, ...]:
     """For each part which of its faces lie inside the body: none."""
     return tuple(np.zeros(len(part.faces), dtype=bool) for part in parts)
 
@@ -279,13 +279,13 @@ def parts_of_wall(wall: Block) -> tuple[Convex, ...]:
     }
     for ends, thickness in wall.section.slabs(heights):
         faces = np.transpose(wall.section.x_of_faces(thickness)).tolist()
-        for left, right in _beside_openings(wall, *ends):
+        for left, right in _parts_beside_openings(wall, *ends):
             bottom, top = ((z, a, b) for z, a, b in zip(ends, left, right, strict=True))
             parts.append(_slab(bottom, top, faces))
     return tuple(parts)
 
 
-def _beside_openings(wall: Block, low: float, high: float) -> list[tuple[Array, Array]]:
+def _parts_beside_openings(wall: Block, low: float, high: float) -> list[tuple[Array, Array]]:
     """Where each part that is left of a wall between two heights begins and ends along it [m], shape (2,) each: at both
     heights."""
     front, z = wall.front, np.array([low, high])

@@ -135,8 +135,8 @@ def require_profile(profile: Sequence[Sequence[float]], thickness: float, height
             raise TypeError(f"profile[{i}] = {shown(pair)} is not a pair of height and thickness [m]")
         z = require_within(f"profile[{i}], height", pair[0], pairs[-1][0] if pairs else 0.0, height * (1 + 1e-12), "m")
         pairs.append((min(z, height), require_within(f"profile[{i}], thickness", pair[1], 1e-3, 20.0, "m")))
-    whole = len(pairs) > 1 and pairs[0][0] == 0 and abs(pairs[-1][0] - height) <= 1e-9 * height
-    if not whole or abs(pairs[0][1] / thickness - 1) > 1e-9:
+    is_complete = len(pairs) > 1 and pairs[0][0] == 0 and abs(pairs[-1][0] - height) <= 1e-9 * height
+    if not is_complete or abs(pairs[0][1] / thickness - 1) > 1e-9:
         raise ValueError(
             f"profile = {shown(profile)} is outside the valid range: it starts at height 0 with the thickness "
             f"{thickness:g} m and ends at the height {height:g} m"
@@ -230,14 +230,14 @@ class Front(NamedTuple):
         """Where the middle of each opening is along the wall, from its middle [m]. Those of one sill that say nothing
         are at equal distances."""
         sills = [opening.sill for opening in self.openings if opening.at is None]
-        places, before = list[float](), list[float]()
+        places, earlier_sills = list[float](), list[float]()
         for opening in self.openings:
             if opening.at is not None:
                 places.append(opening.at)
                 continue
-            wide = float(self.long(np.array(opening.head)))
-            places.append(wide * ((before.count(opening.sill) + 0.5) / sills.count(opening.sill) - 0.5))
-            before.append(opening.sill)
+            length = float(self.long(np.array(opening.head)))
+            places.append(length * ((earlier_sills.count(opening.sill) + 0.5) / sills.count(opening.sill) - 0.5))
+            earlier_sills.append(opening.sill)
         return tuple(places)
 
     def long(self, z: Array) -> Array:
@@ -248,8 +248,8 @@ class Front(NamedTuple):
 
     def net_length(self, z: Array) -> Array:
         """Length of what is left beside the openings at heights above the base [m], shape (n,)."""
-        gone = [opening.across(z) for opening in self.openings]
-        return np.asarray(self.long(z) - sum(gone, np.zeros(np.shape(z))))
+        widths = [opening.across(z) for opening in self.openings]
+        return np.asarray(self.long(z) - sum(widths, np.zeros(np.shape(z))))
 
     @property
     def is_curved(self) -> bool:
@@ -274,14 +274,14 @@ class Front(NamedTuple):
                 )
         edge = 1e-9 * self.height
         ends = [z for opening in self.openings for z in (opening.sill + edge, opening.head - edge)]
-        places = {*ends, *np.linspace(min(ends), max(ends), HEIGHTS_TRIED).tolist()} if ends else set()
-        for z in sorted(places):
+        heights = {*ends, *np.linspace(min(ends), max(ends), HEIGHTS_TRIED).tolist()} if ends else set()
+        for z in sorted(heights):
             height = np.array(z)
             width, length = sum(float(opening.across(height)) for opening in self.openings), float(self.long(height))
             if not width < length * (1 - 1e-9):
-                where = f"at a height of {z:.4g} m" if z > 2 * edge else "at the base"
+                level_text = f"at a height of {z:.4g} m" if z > 2 * edge else "at the base"
                 raise ValueError(
-                    f"the openings {where} are {width:g} m wide together; the valid range is less than "
+                    f"the openings {level_text} are {width:g} m wide together; the valid range is less than "
                     f"{length:g} m, the length of the wall there"
                 )
 
@@ -307,17 +307,17 @@ def moments(section: Section, front: Front, between: tuple[float, float] = (0.0,
             z = low + (high - low) * share
             weight = weight * front.net_length(np.array(0.5 * (low + high)))
         faces = section.x_of_faces(ends[0] + (ends[1] - ends[0]) * share)
-        total += (high - low) * np.array([weight @ term for term in _terms(z, *faces)])
+        total += (high - low) * np.array([weight @ term for term in _integrands(z, *faces)])
     return Moments(*total.tolist())
 
 
-def _terms(z: Array, inner: Array, outer: Array) -> tuple[Array, ...]:
+def _integrands(z: Array, inner: Array, outer: Array) -> tuple[Array, ...]:
     """What the moments of a section are integrals of, at heights with both faces [m], shape (n,) each."""
     t = outer - inner
     return t, 0.5 * (outer**2 - inner**2), t * z, (outer**3 - inner**3) / 3, t * z**2
 
 
-def behind(section: Section, slope: float, height: float) -> Moments:
+def moments_behind(section: Section, slope: float, height: float) -> Moments:
     """Area and moments of what lies between the inner face of a wall and a plane that rises from its inner edge
     backwards by a slope [-], up to a height [m]."""
     total, half = np.zeros(5), 0.5 * section.profile[0][1]
@@ -326,5 +326,5 @@ def behind(section: Section, slope: float, height: float) -> Moments:
             share, weight = np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6
             z = low + (high - low) * share
             inner, _ = section.x_of_faces(ends[0] + (ends[1] - ends[0]) * share)
-            total += (high - low) * np.array([weight @ term for term in _terms(z, -half - slope * z, inner)])
+            total += (high - low) * np.array([weight @ term for term in _integrands(z, -half - slope * z, inner)])
     return Moments(*total.tolist())

@@ -100,8 +100,8 @@ class Tie(Anchored):
         if self.governed_by is not None:
             require_one_of("governed_by of the tie", self.governed_by, GOVERNING)
         if self.prestress and (self.slack or self.prestress >= self.strength):
-            beside = f"slack = {self.slack:g} m" if self.slack else f"strength = {self.strength:g} N"
-            raise ValueError(f"prestress of the tie = {self.prestress:g} N does not go with its {beside}")
+            conflicting = f"slack = {self.slack:g} m" if self.slack else f"strength = {self.strength:g} N"
+            raise ValueError(f"prestress of the tie = {self.prestress:g} N does not go with its {conflicting}")
         if self.ultimate is not None and self.strength == math.inf:
             raise ValueError(
                 f"ultimate of the tie = {self.ultimate:g} m, and its strength is infinite: it does not yield "
@@ -162,8 +162,8 @@ class Tie(Anchored):
         stiffness = number * elastic_modulus * area_of_bar(diameter) / length
         if other_end is not None:
             strengths["other end"] = other_end
-        least = min(strengths, key=lambda name: strengths[name])
-        return cls(height, stiffness, length=length, strength=strengths[least], governed_by=least, **options)
+        weakest = min(strengths, key=lambda name: strengths[name])
+        return cls(height, stiffness, length=length, strength=strengths[weakest], governed_by=weakest, **options)
 
     @property
     def rise(self) -> float:
@@ -234,13 +234,13 @@ def strengths_of_bar(
         {'bar': 106.3, 'punching': 56.1, 'bearing': 180.0}
     """
     a, b = (plate, plate) if isinstance(plate, int | float) else require_array("plate", plate, (2,)).tolist()
-    around = a + b + 2 * thickness
-    punched = number * around
+    perimeter = a + b + 2 * thickness
+    punched_length = number * perimeter
     if spacing is not None:
         spacing = require_within("spacing of the ties", spacing, a, 1000.0, "m")
-        punched = min(punched, around + (number - 1) * spacing)
+        punched_length = min(punched_length, perimeter + (number - 1) * spacing)
     bar, bearing = number * yield_stress * area_of_bar(diameter), number * compressive_strength * a * b
-    strengths = bar, shear_strength * 2 * thickness * punched, bearing
+    strengths = bar, shear_strength * 2 * thickness * punched_length, bearing
     return dict(zip(GOVERNING, strengths, strict=False))
 
 

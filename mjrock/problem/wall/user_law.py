@@ -68,12 +68,12 @@ class UserLaw:
         """Change the memory."""
 
     @classmethod
-    def answering(cls, made: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
+    def answering(cls, compile_method: Callable[[Any], Any] = lambda text: text) -> Callable[[Any, float, float], None]:
         """The function that lets a law answer: it writes `ANSWERS` and the memory of a row, for a closing or elongation
         [m] and its rate [m/s].
 
         Args:
-            made: what is made of its methods, such as a compiled one.
+            compile_method: gives what runs in place of a method, such as a compiled one.
         """
         raise NotImplementedError
 
@@ -89,51 +89,51 @@ def law_class(kind: type[OfUser], base: type[UserLaw], called: str) -> type[OfUs
         raise TypeError(f"{called} is a class, and {kind!r} is none")
     name, needed = kind.__name__, [method for method in base.methods if not hasattr(base, method)]
     for method, count in base.methods.items():
-        takes_all = ", ".join(["self", "u", "rate"][: 1 + count])
+        expected = ", ".join(["self", "u", "rate"][: 1 + count])
         text = getattr(kind, method, getattr(base, method, None))
         if text is None:
-            raise TypeError(f"{name} has no {method}({takes_all}); {called} has {' and '.join(needed)}")
-        takes = list(inspect.signature(text).parameters) if callable(text) else None
-        if takes is None or len(takes) != 1 + count:
-            raise TypeError(f"{name}.{method}({', '.join(takes or ())}) is needed as {method}({takes_all})")
+            raise TypeError(f"{name} has no {method}({expected}); {called} has {' and '.join(needed)}")
+        parameters = list(inspect.signature(text).parameters) if callable(text) else None
+        if parameters is None or len(parameters) != 1 + count:
+            raise TypeError(f"{name}.{method}({', '.join(parameters or ())}) is needed as {method}({expected})")
     _require_methods(kind, base, called)
     _require_names(name, getattr(kind, "memory", ()))
-    body = {each: getattr(kind, each) for each in ("__module__", "__qualname__", "__doc__")}
-    texts = [getattr(kind, "memory", ()), *(_text(getattr(kind, each, None)) for each in base.methods)]
+    body = {attribute: getattr(kind, attribute) for attribute in ("__module__", "__qualname__", "__doc__")}
+    texts = [getattr(kind, "memory", ()), *(_bytecode(getattr(kind, method, None)) for method in base.methods)]
     body["formula"] = hashlib.sha256(repr(texts).encode()).hexdigest()
-    made: type[Any] = dataclass(frozen=True)(type(name, (dataclass(frozen=True)(kind), base), body))
-    names = (*(field.name for field in fields(made)), *made.memory)
-    if (most := ROOM - len(ANSWERS) - len(base.given)) < len(names):
-        raise TypeError(f"{name} has {len(names)} numbers with its memory; the valid range is up to {most}")
-    for twice in {each for each in names if each in base.given or names.count(each) > 1}:
-        beside = f": {' and '.join(base.given)} are those of the joint" if base.given else ""
-        raise TypeError(f"{name} has a number {twice} more than once{beside}")
-    return made
+    law: type[Any] = dataclass(frozen=True)(type(name, (dataclass(frozen=True)(kind), base), body))
+    names = (*(field.name for field in fields(law)), *law.memory)
+    if (largest := ROOM - len(ANSWERS) - len(base.given)) < len(names):
+        raise TypeError(f"{name} has {len(names)} numbers with its memory; the valid range is up to {largest}")
+    for repeated in {number for number in names if number in base.given or names.count(number) > 1}:
+        remark = f": {' and '.join(base.given)} are those of the joint" if base.given else ""
+        raise TypeError(f"{name} has a number {repeated} more than once{remark}")
+    return law
 
 
 def _require_methods(kind: type, base: type[UserLaw], called: str) -> None:
     """Raise a TypeError for a method that is never called, such as a misspelt one, and for a memory without one that
     changes it."""
-    own = [name for each in kind.__mro__[:-1] for name, one in vars(each).items() if inspect.isfunction(one)]
-    if others := [name for name in own if name not in base.methods and not name.startswith("__")]:
+    names = [name for parent in kind.__mro__[:-1] for name, item in vars(parent).items() if inspect.isfunction(item)]
+    if others := [name for name in names if name not in base.methods and not name.startswith("__")]:
         raise TypeError(f"{kind.__name__}.{others[0]} is never called; {called} has {', '.join(base.methods)}")
-    if getattr(kind, "memory", ()) and "remember" not in own:
+    if getattr(kind, "memory", ()) and "remember" not in names:
         raise TypeError(f"{kind.__name__} has a memory and no remember(self, u), which changes it")
 
 
 def _require_names(name: str, memory: object) -> None:
     """Raise a TypeError for a memory that is no tuple of names."""
-    if not isinstance(memory, tuple | list) or not all(isinstance(one, str) and one.isidentifier() for one in memory):
+    if not isinstance(memory, tuple | list) or not all(isinstance(key, str) and key.isidentifier() for key in memory):
         shape = f'("{memory}",)' if isinstance(memory, str) else '("deepest",)'
         raise TypeError(f"{name}.memory = {memory!r} is no tuple of names; give memory = {shape}")
 
 
-def _text(method: object) -> object:
+def _bytecode(method: object) -> object:
     """What a method does, as its bytecode and constants."""
     code = getattr(method, "__code__", method)
     if not inspect.iscode(code):
         return repr(code)
-    return code.co_code, code.co_names, [_text(one) for one in code.co_consts]
+    return code.co_code, code.co_names, [_bytecode(constant) for constant in code.co_consts]
 
 
 @cache
@@ -206,34 +206,34 @@ class AppliedLaw:
         row = self.row(self.values if values is None else values)
         try:
             with np.errstate(all="ignore"):  # what is not finite is refused below
-                _plain(self.kind, remembers)(row, u, rate)
+                _plain_answering(self.kind, remembers)(row, u, rate)
         except AttributeError as error:
             has = ", ".join((layout(self.kind).names or ())[len(ANSWERS) :])
             raise TypeError(f"{self.name}: {error}; {self.whose} {has}") from None
         except Exception as error:
             raise ValueError(f"{self.name} fails at {self.at} of {u:g} m: {error!r}") from None
-        found = Answer(float(row.stress_), float(row.energy_), float(row.damping_))
-        for name, value in zip(self.answers, found, strict=True):
+        answer = Answer(float(row.stress_), float(row.energy_), float(row.damping_))
+        for name, value in zip(self.answers, answer, strict=True):
             if not math.isfinite(value):
                 raise ValueError(f"{self.name}.{name} is {value} at {self.at} of {u:g} m; a finite number is needed")
-        return found
+        return answer
 
     def slope(self, u: float, values: Array | None = None) -> float:
         """Stiffness at a closing or elongation, of a row whose memory stays as it is."""
-        off = 1e-4 * max(abs(u), self.shortest)
-        ends = [self.answer(u + sign, 0.0, None if values is None else values.copy()).stress for sign in (off, -off)]
-        return (ends[0] - ends[1]) / (2 * off)
+        step = 1e-4 * max(abs(u), self.shortest)
+        ends = [self.answer(u + sign, 0.0, None if values is None else values.copy()).stress for sign in (step, -step)]
+        return (ends[0] - ends[1]) / (2 * step)
 
 
 @cache
-def _plain(kind: Any, remembers: bool) -> Callable[[Any, float, float], None]:
+def _plain_answering(kind: Any, remembers: bool) -> Callable[[Any, float, float], None]:
     """What lets a law answer as plain Python, with its memory or with one that stays as it is."""
-    forgets = kind.remember
+    remember = kind.remember
 
-    def text_of(method: object) -> Any:
-        return UserLaw.remember if method is forgets and not remembers else method
+    def chosen_method(method: object) -> Any:
+        return UserLaw.remember if method is remember and not remembers else method
 
-    answering: Callable[[Any, float, float], None] = kind.answering(text_of)
+    answering: Callable[[Any, float, float], None] = kind.answering(chosen_method)
     return answering
 
 
@@ -251,7 +251,7 @@ def require_integral(law: AppliedLaw, u: float, unit: str, force: str) -> None:
     ends = (u * np.append(0.0, np.logspace(-DECADES, 0, DECADES + 1))).tolist()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", IntegrationWarning)  # the difference is looked at
-        parts = [quad(force_at, *two, epsrel=0.1 * INTEGRAL, limit=100)[0] for two in itertools.pairwise(ends)]
+        parts = [quad(force_at, *bounds, epsrel=0.1 * INTEGRAL, limit=100)[0] for bounds in itertools.pairwise(ends)]
     total, size = sum(parts), sum(map(abs, parts))
     first, last = (law.answer(end, 0.0, values, remembers=False).energy for end in (0.0, u))
     if abs(last - first - total) > INTEGRAL * max(abs(last - first), size):

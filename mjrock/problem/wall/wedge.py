@@ -15,7 +15,7 @@ from .block import Block
 from .case import Case
 from .effect import CombinedEffect
 from .effects import AddedMass, Load, Thrust, required_effects
-from .section import behind
+from .section import moments_behind
 from .tie import Tie
 
 LEAST_ANGLE = 1e-6
@@ -71,9 +71,9 @@ class Wedge(CombinedEffect):
     @property
     def description(self) -> str:
         """For sketches, and for reports that have no words for it."""
-        of = "" if self.density is None else f", {self.density:g} kg/m3"
+        density_text = "" if self.density is None else f", {self.density:g} kg/m3"
         return (
-            f"{self.number} of {self.thickness:g} m, {self.height:g} m high{of},\n"
+            f"{self.number} of {self.thickness:g} m, {self.height:g} m high{density_text},\n"
             f"crack at {math.degrees(self.angle):.3g}° from the vertical"
         )
 
@@ -90,7 +90,7 @@ class Wedge(CombinedEffect):
         require_within("height of the wedge", self.height, 0.01, 2 * facade.h * (1 + 1e-12), "m")
         density = facade.density if self.density is None else self.density
         height = min(self.height, 2 * facade.h)
-        area, x, z, xx, zz = behind(facade.section, math.tan(self.angle), height)
+        area, x, z, xx, zz = moments_behind(facade.section, math.tan(self.angle), height)
         mass, middle, level = self.number * density * self.thickness * area, x / area, z / area
         radius = math.sqrt((xx + zz) / area - middle**2 - level**2)
         face = facade.section.inner_up_to(height).tolist()
@@ -145,17 +145,17 @@ class WedgeMass(AddedMass):
         return np.array(self.corners)
 
 
-def bisecting(tie: Tie) -> Tie:
+def tie_along_bisector(tie: Tie) -> Tie:
     """Two equal ties along two walls at right angles as one along the bisector of both, horizontal and behind it.
 
     With c the cosine of half the angle between them, which is 1 / sqrt(2) of horizontal ones, the one has the force
     2 c F, and each of them the elongation c u of its u.
     """
-    along = tie.length / math.sqrt(2)
-    cosine = math.hypot(along, tie.rise) / tie.span
+    length = tie.length / math.sqrt(2)
+    cosine = math.hypot(length, tie.rise) / tie.span
     return replace(
         tie,
-        length=along,
+        length=length,
         stiffness=2 * cosine**2 * tie.stiffness,
         slack=tie.slack / cosine,
         strength=2 * cosine * tie.strength,
@@ -236,7 +236,7 @@ class Corner:
     @cached_property
     def case(self) -> Case:
         """The wall that stands for it, with its effects and masses."""
-        effects = (bisecting(effect) if isinstance(effect, Tie) else effect for effect in self.effects)
+        effects = (tie_along_bisector(effect) if isinstance(effect, Tie) else effect for effect in self.effects)
         return Case(self.block, effects=(*effects, *self.masses))
 
     @property
