@@ -83,7 +83,7 @@ def solve_compliant(
     parts = intervals(case.duration / count, 1e-3 / wall.p)  # peaks and impacts are read off finer samples
     require_sample_count(count * parts)
     output = np.linspace(0.0, case.duration, count * parts + 1)
-    solution = _integrated(system, case, output, period, rtol, atol)
+    solution = _integrate(system, case, output, period, rtol, atol)
     t, states = solution.t, solution.states
     motion = SampledMotion(states[:, None, :3], states[:, None, 3:6], system.energy(states))
     reading, kept = wall_reading(case, contacts, t, motion), thinned(len(t), parts)
@@ -127,7 +127,7 @@ class Solution(NamedTuple):
     switches: int
 
 
-def _integrated(system: Wall, case: Case, output: Array, period: float, rtol: float, atol: float) -> Solution:
+def _integrate(system: Wall, case: Case, output: Array, period: float, rtol: float, atol: float) -> Solution:
     """The motion of a wall at the times of the output, which ends where the wall overturns.
 
     The integration is split where friction catches or releases the base, where a slider begins to slip or to stick, and
@@ -135,36 +135,36 @@ def _integrated(system: Wall, case: Case, output: Array, period: float, rtol: fl
     """
 
     def switch(t: float, y: Array) -> float:
-        return system.edge_load(t, y) - (0.0 if held else RECAUGHT_LOAD * system.weight)
+        return system.edge_load(t, y) - (0.0 if is_held else RECAUGHT_LOAD * system.weight)
 
     def overturning(t: float, y: Array) -> float:
         return abs(float(y[2])) - ON_ITS_FACE
 
     switch.terminal = overturning.terminal = True  # type: ignore[attr-defined]
     t, y = 0.0, system.released()
-    held, changes = system.edge_load(t, y) > 0, [slider_event(system, i) for i in range(len(system.sliders))]
-    fired = [False] * len(changes)
-    system.settle(y, fired)
+    is_held, slider_events = system.edge_load(t, y) > 0, [slider_event(system, i) for i in range(len(system.sliders))]
+    have_fired = [False] * len(slider_events)
+    system.settle(y, have_fired)
     states, times = [system.with_places(y[:, None])], [np.zeros(1)]
     evaluations = switches = 0
     with Bar("contact law, SciPy", "s", case.duration) as bar:
         while switches < MOST_SWITCHES:
-            if held:
+            if is_held:
                 y = system.caught(y)
-            system.settle(y, fired)
-            switch.direction = -1 if held else 1  # type: ignore[attr-defined]
+            system.settle(y, have_fired)
+            switch.direction = -1 if is_held else 1  # type: ignore[attr-defined]
             end = system.begin_arc(t)
             inside = output[(output > t) & (output <= end)]
             arc = solve_ivp(
-                system.sticking if held else system.free,
+                system.sticking if is_held else system.free,
                 (t, end),
                 y,
                 method="DOP853",
                 t_eval=np.unique(np.append(inside, end)),
-                events=(switch, overturning, *changes),
+                events=(switch, overturning, *slider_events),
                 rtol=rtol,
                 atol=atol,
-                max_step=min([10 * period, *(motion.dt for motion in system.grounds if _bends(motion, t, end))]),
+                max_step=min([10 * period, *(motion.dt for motion in system.grounds if _is_sampled(motion, t, end))]),
             )
             if arc.status < 0:
                 raise RuntimeError(f"no solution beyond t = {arc.t[-1]:g} s: {arc.message}; relax rtol or atol")
@@ -172,23 +172,23 @@ def _integrated(system: Wall, case: Case, output: Array, period: float, rtol: fl
             times.append(arc.t[: len(inside)])
             states.append(system.with_places(np.reshape(arc.y, (6, -1))[:, : len(inside)]))
             if arc.status == 0 and end < case.duration:
-                t, y, fired = end, arc.y[:, -1], [False] * len(changes)
+                t, y, have_fired = end, arc.y[:, -1], [False] * len(slider_events)
                 continue
             if arc.status == 0 or arc.t_events[1].size:
-                system.settle(arc.y_events[1][0] if arc.t_events[1].size else arc.y[:, -1], fired)
+                system.settle(arc.y_events[1][0] if arc.t_events[1].size else arc.y[:, -1], have_fired)
                 return Solution(np.concatenate(times), np.concatenate(states, axis=1).T, evaluations, switches)
-            fired = [bool(when.size) for when in arc.t_events[2:]]
-            last = next(i for i, when in enumerate(arc.t_events) if when.size)
-            t, y = float(arc.t_events[last][0]), arc.y_events[last][0]
+            have_fired = [bool(instants.size) for instants in arc.t_events[2:]]
+            event = next(i for i, instants in enumerate(arc.t_events) if instants.size)
+            t, y = float(arc.t_events[event][0]), arc.y_events[event][0]
             bar.to(t)
-            held = held != bool(arc.t_events[0].size)
+            is_held = is_held != bool(arc.t_events[0].size)
             switches += 1
     raise RuntimeError(
         f"base or dampers began to stick or slip {MOST_SWITCHES} times by t = {t:g} s; relax rtol or atol"
     )
 
 
-def _bends(motion: GroundMotion, t: float, end: float) -> bool:
+def _is_sampled(motion: GroundMotion, t: float, end: float) -> bool:
     """Whether a motion has samples within an arc, which its steps then resolve."""
     return motion.instants is None or bool(((motion.instants > t) & (motion.instants < end)).any())
 

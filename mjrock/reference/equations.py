@@ -61,22 +61,22 @@ class Wall:
         self.grounds = [motion for motion in (case.motion, case.vertical) if motion is not None]
         self.arc = -math.inf, math.inf  # from one jump of the ground to the next [s]
         self.mass, self.inertia, self.weight = wall.mass, wall.inertia, wall.weight
-        self.base, self.up, off = contacts.base, wall.centroid_height, wall.centroid_offset
-        self.edges = wall.half_base - off, -wall.half_base - off
-        self.at = self.base.positions - off
+        self.base, self.up, offset = contacts.base, wall.centroid_height, wall.centroid_offset
+        self.edges = wall.half_base - offset, -wall.half_base - offset
+        self.at = self.base.positions - offset
         self.side = None if case.stop_top is None else contacts.side_up_to(case.stop_top)
         if self.side is not None:
             self.heights = self.side.positions + 0.5 * float(case.stop_top or 0.0) - self.up
             self.face = np.array([self._face(height) for height in self.heights])
         self.forces = [
-            PointForce(effect.offset - off, effect.height - self.up, fx=force[0], fz=force[2])
+            PointForce(effect.offset - offset, effect.height - self.up, fx=force[0], fz=force[2])
             for effect, force in constant_forces_of(case.effects).values()
         ]
         self.ties = [(tie.height - self.up, tie) for tie in case.springs.values() if tie.law.push == 0]
         self.sliders: dict[str, Slider] = {}  # of friction dampers, which bear nothing at rest
         self.slipping: list[tuple[float, Anchored]] = []
         self.dampers = [link for link in case.links.values() if link.law.damps]
-        self.rest = self._rest()
+        self.rest = self._pose_of_rest()
         self.slipping = [(link.height - self.up, link) for link in case.springs.values() if link.law.push > 0]
         names = (name for name, link in case.springs.items() if link.law.push > 0)
         placed = zip(names, self.slipping, self.elongations(np.append(self.rest, np.zeros(3))), strict=True)
@@ -116,8 +116,8 @@ class Wall:
 
     def with_places(self, states: Array) -> Array:
         """States of an arc of shape (6, n), and behind them the places of the sliders, shape (6 + sliders, n)."""
-        at = zip(self.sliders.values(), self.elongations(states), strict=True)
-        return np.vstack([states, *(slider.places(elongation) for slider, (elongation, _) in at)])
+        pairs = zip(self.sliders.values(), self.elongations(states), strict=True)
+        return np.vstack([states, *(slider.places(elongation) for slider, (elongation, _) in pairs)])
 
     def base_gap(self, z: Real, theta: Real) -> Array:
         """Height of each contact line of the base above the base [m]."""
@@ -138,9 +138,9 @@ class Wall:
         toe, theta = self.edges[0 if case.direction > 0 else 1], case.theta0
         sine, cosine = math.sin(theta), math.cos(theta)
         rates = case.omega0 * np.array([self.up * cosine + toe * sine, toe * cosine - self.up * sine, 1.0])
-        return np.concatenate([[toe - toe * cosine + self.up * sine, self._lowered(theta), theta], rates])
+        return np.concatenate([[toe - toe * cosine + self.up * sine, self._height_on_springs(theta), theta], rates])
 
-    def _lowered(self, theta: float) -> float:
+    def _height_on_springs(self, theta: float) -> float:
         """How far the wall tilted by `theta` is raised when its springs carry weight and loads [m]."""
         lowest, carried = self.base_gap(0.0, theta), self.weight - sum(force.fz for force in self.forces)
 
@@ -150,38 +150,38 @@ class Wall:
         crushed = -float(lowest.max()) - 2 * carried / float(self.base.stiffness.sum())
         return float(brentq(excess, crushed, -float(lowest.min()), xtol=1e-18, rtol=1e-15))
 
-    def _rest(self) -> Array:
+    def _pose_of_rest(self) -> Array:
         """Displacement and rotation in equilibrium, the base held by friction, shape (3,)."""
         if not (self.forces or self.ties or self.case.wall.centroid_offset):
-            return np.array([0.0, self._lowered(0.0), 0.0])
+            return np.array([0.0, self._height_on_springs(0.0), 0.0])
 
         def pose(unknowns: Array) -> Array:
-            z, theta = unknowns * (self._lowered(0.0), 1e-3)
+            z, theta = unknowns * (self._height_on_springs(0.0), 1e-3)
             return np.array([self.up * math.sin(theta), z, theta])
 
         def unbalanced(unknowns: Array) -> Array:
             rates = self.sticking(0.0, np.append(pose(unknowns), np.zeros(3)), shaken=False)
             return rates[4:] * (1 / GRAVITY, self.inertia / (self.weight * self.up))
 
-        best, _, success, why = fsolve(unbalanced, (1.0, 1e3 * self._leaning()), xtol=1e-13, full_output=True)
+        best, _, success, message = fsolve(unbalanced, (1.0, 1e3 * self._lean_angle()), xtol=1e-13, full_output=True)
         if success != 1 and np.abs(unbalanced(best)).max() > 1e-9:
-            raise ValueError(f"the wall does not stand on its contacts: {why}")
+            raise ValueError(f"the wall does not stand on its contacts: {message}")
         return pose(best)
 
-    def _leaning(self) -> float:
+    def _lean_angle(self) -> float:
         """About where a wall that its thrusts would overturn leans on its ties [rad]; zero for any other."""
         if self.case.restoring.outer.P > 0:
             return 0.0
         phi = np.linspace(0.0, 0.2, 4001)
-        held = self.case.restoring.outer.at(phi) + sum(pull.moment(phi) for pull in self.case.pulls)
-        return float(phi[np.argmax(held > 0)])
+        moment = self.case.restoring.outer.at(phi) + sum(pull.moment(phi) for pull in self.case.pulls)
+        return float(phi[np.argmax(moment > 0)])
 
     def energy(self, history: Array) -> Array:
         """Kinetic, potential and elastic energy of many states above the wall at rest [J], shape (n,)."""
         rest = np.concatenate([self.rest, np.zeros(3), [slider.start for slider in self.sliders.values()]])[None]
-        return self._energy(history) - self._energy(rest)
+        return self._absolute_energy(history) - self._absolute_energy(rest)
 
-    def _energy(self, history: Array) -> Array:
+    def _absolute_energy(self, history: Array) -> Array:
         x, z, theta, vx, vz, omega = history.T[:6]
         doubled = self.mass * (vx**2 + vz**2) + self.inertia * omega**2 + 2 * self.weight * z
         doubled += np.minimum(self.base_gap(z[:, None], theta[:, None]), 0) ** 2 @ self.base.stiffness
@@ -216,7 +216,7 @@ class Wall:
         force = -resistance(damper.law, (across * rate_across + above * rate_above) / length)
         return PointForce(px, pz, force * across / length, force * above / length)
 
-    def _towards_anchor(self, height: float, pull: Pull[float], force: float) -> PointForce:
+    def _force_towards_anchor(self, height: float, pull: Pull[float], force: float) -> PointForce:
         """The force of a link [N] at a height above the centroid [m] on the wall."""
         return PointForce(-self._face(height), height, -pull.across * force, -pull.up * force)
 
@@ -255,14 +255,14 @@ class Wall:
             push = np.where(gap < 0, np.maximum(push, 0), 0)
             Fx, moment = float(push.sum()), moment + float(push @ height)
         applied = list(self.forces)
-        for at, tie in self.ties:
-            pull = self._pull(at, tie, x, z, theta)
+        for link_height, tie in self.ties:
+            pull = self._pull(link_height, tie, x, z, theta)
             if (force_of_tie := tie.law.k * max(pull.elongation, 0.0)) > 0:
-                applied.append(self._towards_anchor(at, pull, force_of_tie))
+                applied.append(self._force_towards_anchor(link_height, pull, force_of_tie))
         applied += [self._damper_force(damper, y) for damper in self.dampers]
-        for slider, (at, link) in zip(self.sliders.values(), self.slipping, strict=True):
-            pull = self._pull(at, link, x, z, theta)
-            applied.append(self._towards_anchor(at, pull, slider.pull(pull.elongation)))
+        for slider, (link_height, link) in zip(self.sliders.values(), self.slipping, strict=True):
+            pull = self._pull(link_height, link, x, z, theta)
+            applied.append(self._force_towards_anchor(link_height, pull, slider.pull(pull.elongation)))
         sine, cosine = math.sin(theta), math.cos(theta)
         for px, pz, fx, fz in applied:
             Fx, Fz = Fx + fx, Fz + fz
@@ -332,13 +332,13 @@ class Slider:
             elongation, rate: of the link now [m, m/s].
             fired: whether the last arc ended because `change` fell through zero.
         """
-        before, stretch = self.sense, self.law.strength / self.law.k
+        sense_before, stretch = self.sense, self.law.strength / self.law.k
         place = min(max(self.place, elongation - stretch), elongation + stretch)
         self.path += abs(place - self.place)
         self.place = place
         pull = self.law.k * (elongation - self.place)
-        if before:
-            slips = not fired and before * rate >= 0
+        if sense_before:
+            slips = not fired and sense_before * rate >= 0
         else:
             slips = abs(pull) >= self.law.strength * (1 - SLIP_ROUNDING) and (fired or pull * rate > 0)
         self.sense = int(math.copysign(1.0, pull)) if slips else 0

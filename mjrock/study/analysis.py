@@ -85,8 +85,8 @@ class MasonrySubject:
 
     def law(self, solver: str, contacts: Contacts | None) -> str:
         """The law of the damping of its joints, or "given"."""
-        given = self.case.masonry.law
-        return "given" if given is None else str(getattr(given, "name", spelt(given)))
+        law = self.case.masonry.law
+        return "given" if law is None else str(getattr(law, "name", spelt(law)))
 
     def values(self, response: Response, law: str) -> tuple[object, ...]:
         """The values of the columns: outcome, fallen blocks and largest motions."""
@@ -113,12 +113,12 @@ def solver_named(name: str) -> Callable[..., Response]:
         from ..engine.simulation import simulate
 
         return simulate
-    others: dict[str, Callable[..., Response]] = {
+    solvers: dict[str, Callable[..., Response]] = {
         "analytical": solve_analytical,
         "compliant": solve_compliant,
         "explicit": solve_explicit,
     }
-    return others[name]
+    return solvers[name]
 
 
 TIE_COLUMNS = ("elongation_m", "force_N", "energy_J", "broken_s")
@@ -198,10 +198,10 @@ class Analysis:
         return subject_of(self.case).PEAK
 
     def __repr__(self) -> str:
-        by = "" if self.contacts is None else f", {self.contacts}"
-        by = f", e = {self.e}" if self.solver == "analytical" else by
+        inputs = "" if self.contacts is None else f", {self.contacts}"
+        inputs = f", e = {self.e}" if self.solver == "analytical" else inputs
         options = "".join(f", {name} = {value}" for name, value in self.options.items())
-        return f"<Analysis by {self.solver} of {self.case!r}{by}{options}>"
+        return f"<Analysis by {self.solver} of {self.case!r}{inputs}{options}>"
 
     def solve(self) -> Response:
         """The response."""
@@ -219,19 +219,19 @@ class Analysis:
         values = subject_of(self.case).values(response, self.law)
         ending = float(response.t[-1]), response.message
         forces = () if response.kept_forces is None else (response.forces.largest_reaction,)
-        further = *_of_ties(response), *forces, *_of_actuators(response)
+        further = *_columns_of_ties(response), *forces, *_columns_of_actuators(response)
         return dict(zip(self.COLUMNS, (*values, *ending, *further), strict=True))
 
 
-def _of_ties(response: Response) -> Iterator[float | None]:
+def _columns_of_ties(response: Response) -> Iterator[float | None]:
     """The columns of ties. A tie that did not yield has an elongation and an energy of zero."""
     for name, tie in response.ties.items():
-        drawn = response.plastic.get(name, Plastic(0.0, 0.0))
-        broken = None if math.isinf(drawn.broken) else drawn.broken
-        yield from (drawn.elongation, tie.largest_force, drawn.energy + drawn.lost, broken)
+        plastic = response.plastic.get(name, Plastic(0.0, 0.0))
+        broken = None if math.isinf(plastic.broken) else plastic.broken
+        yield from (plastic.elongation, tie.largest_force, plastic.energy + plastic.lost, broken)
 
 
-def _of_actuators(response: Response) -> Iterator[float]:
+def _columns_of_actuators(response: Response) -> Iterator[float]:
     """The columns of actuators. Their largest force is that among the samples, with its sign."""
     for name, force in response.actuators.items():
         yield float(force[np.abs(force).argmax()])

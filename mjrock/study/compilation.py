@@ -30,31 +30,31 @@ K_N = 1e9
 """Interface stiffness of what is run [N/m3]."""
 
 
-def _in_mujoco(timestep: float | None) -> None:
+def _run_in_mujoco(timestep: float | None) -> None:
     """A wall with a damper under a pulse."""
     contacts, pulse = Contacts.from_damping(WALL, k_base=K_N, xi_base=0.05), GroundMotion.half_sine(9.0, 0.5)
     case = Case(WALL, 0.01, 0.02, side_stop=False, motion=pulse, effects=(Damper(height=4.0, c=1e3),))
     simulate(case, contacts, timestep, ledger=True, forces=True)
 
 
-def _pushed(masonry: Masonry) -> MasonryCase:
+def _pushed_case(masonry: Masonry) -> MasonryCase:
     return MasonryCase(masonry, 1.0, motion=GroundMotion.half_sine(9.0, 0.5))
 
 
-def _in_space() -> Masonry:
+def _box_in_space() -> Masonry:
     return Masonry.box((0.6, 0.4, 2.0), k_n=K_N)
 
 
 RUNS: tuple[Callable[[], object], ...] = (
-    lambda: _in_mujoco(None),
-    lambda: solve_explicit(_pushed(Masonry.stack([WALL], K_N)), ledger=True, forces=True),
-    lambda: simulate(MasonryCase(_in_space(), 0.02), ledger=True, forces=True),
-    lambda: solve_explicit(_pushed(_in_space()), ledger=True, forces=True),
-    lambda: _in_mujoco(1e-4),
+    lambda: _run_in_mujoco(None),
+    lambda: solve_explicit(_pushed_case(Masonry.stack([WALL], K_N)), ledger=True, forces=True),
+    lambda: simulate(MasonryCase(_box_in_space(), 0.02), ledger=True, forces=True),
+    lambda: solve_explicit(_pushed_case(_box_in_space()), ledger=True, forces=True),
+    lambda: _run_in_mujoco(1e-4),
     lambda: solve_analytical(
         Case(WALL, 0.0, 1.0, motion=GroundMotion.half_sine(9.0, 0.5)), Restitution.from_geometry(WALL)
     ),
-    lambda: simulate(MasonryCase(_in_space(), 0.02), timestep=1e-4),
+    lambda: simulate(MasonryCase(_box_in_space(), 0.02), timestep=1e-4),
 )
 """Short runs that call the loops of all solvers, in the plane and in space; MuJoCo and explicit steps in turn."""
 
@@ -73,8 +73,8 @@ def answer(argv: Sequence[str]) -> Answer:
         OSError: if no folder can be written.
         ValueError: if there is no compiler.
     """
-    what = "Compile the loops of all solvers and store them; some two minutes, once for an installation."
-    parser_of("compile", what).parse_args(argv)
+    description = "Compile the loops of all solvers and store them; some two minutes, once for an installation."
+    parser_of("compile", description).parse_args(argv)
     if not compiles():
         raise ValueError("nothing can be compiled: numba is not installed, or NUMBA_DISABLE_JIT is set")
     from ..loop_cache import folder  # which imports numba

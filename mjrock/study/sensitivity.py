@@ -66,10 +66,10 @@ class Sensitivity(NotebookPicture):
         """
         if setting not in self.settings:
             raise ValueError(f"setting = {shown(setting)} is not one of {', '.join(self.settings)}")
-        own = self._alone(setting)
-        return min(own), max(own)
+        values = self._values_alone(setting)
+        return min(values), max(values)
 
-    def _alone(self, setting: str) -> list[float]:
+    def _values_alone(self, setting: str) -> list[float]:
         """The values of the base and of the runs in which this setting alone changes."""
         runs = zip(self.values.tolist(), self.changed, strict=True)
         return [value for value, names in runs if names in ((), (setting,))]
@@ -80,7 +80,7 @@ class Sensitivity(NotebookPicture):
 
         def width(name: str) -> tuple[bool, float]:
             low, high = self.swing(name)
-            finite = [value for value in self._alone(name) if math.isfinite(value)]
+            finite = [value for value in self._values_alone(name) if math.isfinite(value)]
             return low < high == math.inf, max(finite, default=0.0) - min(finite, default=0.0)
 
         return {name: self.swing(name) for name in sorted(self.settings, key=width, reverse=True)}
@@ -112,15 +112,15 @@ class Sensitivity(NotebookPicture):
 
     def table(self) -> str:
         """The swing of each setting, the widest first, and the range of all runs, as text."""
-        together = sum(len(names) > 1 for names in self.changed)
+        combined = sum(len(names) > 1 for names in self.changed)
         rows = [["setting", "in the base", "lowest", "highest", "runs"]]
         for name, ends in self.swings.items():
             count = sum(names == (name,) for names in self.changed)
             rows.append([name, setting_text(self.base[name]), *map(self.written, ends), str(count)])
-        if together:
-            rows.append(["together", "", *map(self.written, self.range), str(together)])
-        what = f"{self.measure}{f' [{self.unit}]' if self.unit else ''}"
-        return "\n".join([f"{what}: {self.written(self.base_value)} in the base", *aligned(rows), self.sentence])
+        if combined:
+            rows.append(["together", "", *map(self.written, self.range), str(combined)])
+        title = f"{self.measure}{f' [{self.unit}]' if self.unit else ''}"
+        return "\n".join([f"{title}: {self.written(self.base_value)} in the base", *aligned(rows), self.sentence])
 
     def csv(self) -> str:
         """Every run as CSV text: its settings and the measure."""
@@ -175,8 +175,8 @@ def sensitivity(
         try:
             tasks.append(labelled(build(**point), labels))
         except Exception as error:
-            at = ", ".join(f"{name} = {shown(value)}" for name, value in point.items())
-            raise ValueError(f"build fails at {at}: {type(error).__name__}: {error}") from error
+            settings_text = ", ".join(f"{name} = {shown(value)}" for name, value in point.items())
+            raise ValueError(f"build fails at {settings_text}: {type(error).__name__}: {error}") from error
     column = _column(tasks[0], measure)
     with TemporaryDirectory() as folder:
         path = Path(folder) / "sensitivity.sqlite" if store is None else require_path("store", store)
@@ -186,8 +186,8 @@ def sensitivity(
         if isinstance(row[column], str) or row[column] is None:
             raise ValueError(f"measure = {column!r} is {row[column]!r} in a row; it has to be a number")
     values = np.array([row[column] for row in rows], dtype=float)
-    given = {name: axis_label(points[0][name]) for name in vary}
-    return Sensitivity(column, tuple(vary), given, tuple(rows), values, changed)
+    base_labels = {name: axis_label(points[0][name]) for name in vary}
+    return Sensitivity(column, tuple(vary), base_labels, tuple(rows), values, changed)
 
 
 def _points(
@@ -206,11 +206,11 @@ def _points(
     for name, values in vary.items():
         if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or not len(values):
             raise ValueError(f"vary[{name!r}] = {shown(values)} is not a row of at least one value")
-        given = [base[name], *values] if name in base else list(values)
-        unlike: dict[object, object] = {}
-        for value in given:
-            unlike.setdefault(axis_label(value), value)
-        choices[name] = list(unlike.values())
+        candidates = [base[name], *values] if name in base else list(values)
+        distinct: dict[object, object] = {}
+        for value in candidates:
+            distinct.setdefault(axis_label(value), value)
+        choices[name] = list(distinct.values())
     require_size("the number of runs", math.prod(map(len, choices.values())) if together else 1, "vary fewer settings")
     first = dict(base) | {name: values[0] for name, values in choices.items()}
     places = [(0,) * len(choices)]
@@ -234,8 +234,8 @@ def defaults_of(build: Callable[..., object], names: Iterable[str]) -> dict[str,
         arguments = inspect.signature(build).parameters
     except (TypeError, ValueError):  # some built-in functions have no signature
         return {}
-    found = {name: arguments[name].default for name in names if name in arguments}
-    return {name: value for name, value in found.items() if value is not inspect.Parameter.empty}
+    defaults = {name: arguments[name].default for name in names if name in arguments}
+    return {name: value for name, value in defaults.items() if value is not inspect.Parameter.empty}
 
 
 def _column(task: Task, measure: str | None) -> str:

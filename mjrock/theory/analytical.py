@@ -86,16 +86,16 @@ def solve_analytical(
         t_end = float(motion.end.t) if outcome is Outcome.OVERTURNED else case.duration
         samples = np.linspace(0.0, t_end, intervals(t_end, spacing) + 1)
         theta, omega = motion.sample(samples)
-    released = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
-    stretched, plastic = _with_ties(case, motion, samples, theta)
+    release_peaks = [] if case.released_outwards or case.release_energy == 0 else [case.release_peak]
+    energy_of_ties, plastic = _tie_states(case, motion, samples, theta)
     if outcome is not Outcome.OVERTURNED:
         warn_of_ties(case, plastic)
     response = Response(
         case=case,
         solver="analytical",
         t=samples,
-        motion=RigidMotion(case, theta, omega, stretched),
-        rocking=Rocking(tuple(map(Impact._make, motion.impacts.tolist())), np.append(released, motion.peaks)),
+        motion=RigidMotion(case, theta, omega, energy_of_ties),
+        rocking=Rocking(tuple(map(Impact._make, motion.impacts.tolist())), np.append(release_peaks, motion.peaks)),
         outcome=outcome,
         plastic=plastic,
         message=describe(outcome, case, t_end, float(theta[-1])) + ties_message(plastic),
@@ -151,9 +151,9 @@ def _outcome(case: Case, motion: RockingMotion) -> Outcome:
 def _require_solvable(case: Case, e: AnyRestitution) -> None:
     """Raise ValueError for a case that rocking theory does not cover."""
     if case.side_stop and not -1 <= e.lumped < 0:
-        low = "" if case.stop_top == 2 * case.block.h else f": a stop of {case.stop_top:g} m may be too low"
+        hint = "" if case.stop_top == 2 * case.block.h else f": a stop of {case.stop_top:g} m may be too low"
         raise ValueError(
-            f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop{low}"
+            f"lumped restitution = {e.lumped:g} is outside the valid range -1 <= e_1s < 0 for a side stop{hint}"
         )
     case.require_for("rocking theory")
     for name, link in case.links.items():
@@ -179,11 +179,11 @@ def _rocking(case: Case, e: AnyRestitution, rtol: float, rest: float) -> Rocking
     shaken = case.motion is not None or case.vertical is not None
     outer, inner = case.restoring
     weaker = outer if case.side_stop or outer.P <= inner.P else inner
-    least = rest * (float(weaker.energy(weaker.alpha)) if shaken else case.release_energy)
-    return rock(case, impacts_of(e, lumped=bool(case.side_stop)), least, rtol)
+    least_energy = rest * (float(weaker.energy(weaker.alpha)) if shaken else case.release_energy)
+    return rock(case, impacts_of(e, lumped=bool(case.side_stop)), least_energy, rtol)
 
 
-def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:
+def _tie_states(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tuple[Array | float, dict[str, Plastic]]:
     """Energy of the ties at the samples [J], and what they have yielded."""
     if not case.pulls:
         return 0.0, {}
@@ -191,9 +191,9 @@ def _with_ties(case: Case, motion: RockingMotion, t: Array, theta: Array) -> tup
     plastic, ends = np.empty((len(t), len(case.pulls))), {}
     for i, (pull, elongation) in enumerate(zip(case.pulls, motion.yielded.T, strict=True)):
         broken = np.isinf(elongation)
-        drawn, when = np.where(broken, pull.ultimate, elongation), float(times[broken].min(initial=math.inf))
-        plastic[:, i], gone = np.where(t >= when, np.inf, np.interp(t, times, drawn)), float(drawn[-1])
+        yielded, break_time = np.where(broken, pull.ultimate, elongation), float(times[broken].min(initial=math.inf))
+        plastic[:, i], final = np.where(t >= break_time, np.inf, np.interp(t, times, yielded)), float(yielded[-1])
         ends[f"tie_{i}"] = Plastic(
-            gone, gone * pull.strength if gone else 0.0, when, broken_energy(pull) if broken.any() else 0.0
+            final, final * pull.strength if final else 0.0, break_time, broken_energy(pull) if broken.any() else 0.0
         )
     return tie_energy(case.pulls, theta, plastic), ends

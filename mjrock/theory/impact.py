@@ -87,17 +87,17 @@ def rigid_impact(masonry: Masonry, velocity: Array | ArrayLike) -> RigidImpact:
         raise ValueError("velocity is zero everywhere; an impact needs a block that moves")
     blocks, joints = masonry.polygons, masonry.plane_joints
     ends = lines_of(blocks, joints, np.ones(len(joints)), 2, mirrored=False)
-    root = np.sqrt([m for i in masonry.free for m in (blocks[i].mass, blocks[i].mass, float(blocks[i].inertia))])
-    opens = rates(blocks, ends, ends.normal).toarray() / root
-    slips = rates(blocks, ends, ends.along).toarray()[::2] / root  # both ends of a joint slip alike
-    after, normal, shear = _projected(root * before, opens, slips, masonry.joint_friction > 0)
-    momentum = float(np.linalg.norm(root * before))
+    root_masses = np.sqrt([m for i in masonry.free for m in (blocks[i].mass, blocks[i].mass, float(blocks[i].inertia))])
+    opens = rates(blocks, ends, ends.normal).toarray() / root_masses
+    slips = rates(blocks, ends, ends.along).toarray()[::2] / root_masses  # both ends of a joint slip alike
+    after, normal, shear = _velocity_and_impulses(root_masses * before, opens, slips, masonry.joint_friction > 0)
+    momentum = float(np.linalg.norm(root_masses * before))
     after[np.abs(after) <= IMPACT_ROUNDING * momentum] = 0.0  # a block that stops has a velocity of exactly zero
-    opening = (opens @ after).reshape(-1, 2).max(axis=1) > IMPACT_ROUNDING * momentum / root.max()
+    opening = (opens @ after).reshape(-1, 2).max(axis=1) > IMPACT_ROUNDING * momentum / root_masses.max()
     return RigidImpact(
-        velocity=frozen((after / root).reshape(-1, 3)),
+        velocity=frozen((after / root_masses).reshape(-1, 3)),
         kept=float(after @ after) / momentum**2,
-        opening=tuple(joint.name for joint, wide in zip(joints, opening, strict=True) if wide),
+        opening=tuple(joint.name for joint, is_open in zip(joints, opening, strict=True) if is_open),
         impulses=frozen(np.column_stack([normal, shear])),
     )
 
@@ -123,11 +123,11 @@ def rigid_rocking(stack: RigidStack) -> Restitution:
     foot = stack.masonry.joints[stack.base].middle
     below = z + foot[1] - max(max(joint.start[1], joint.end[1]) for joint in joints)
     face = outwards * (x + foot[0] - joints[0].middle[0])
-    kept = stack.inertia + mass * (stack.lever(-outwards) * face + z * below)
-    return Restitution(base, float(kept / (stack.inertia + mass * (face**2 + below**2))))
+    momentum = stack.inertia + mass * (stack.lever(-outwards) * face + z * below)
+    return Restitution(base, float(momentum / (stack.inertia + mass * (face**2 + below**2))))
 
 
-def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple[Array, Array, Array]:
+def _velocity_and_impulses(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple[Array, Array, Array]:
     """The velocity after, the impulses across the ends of each joint and those along it.
 
     Velocities are those of the blocks times the root of their mass, shape (n,). Rates of opening are at the two ends of
@@ -144,30 +144,30 @@ def _projected(before: Array, opens: Array, slips: Array, rough: Flags) -> tuple
 
     sticking, parted = rough & closed_in(before), np.zeros_like(rough)
     while True:
-        after, normal, shear = _with_sticking(before, opens, slips, sticking)
+        after, normal, shear = _solved_with_sticking(before, opens, slips, sticking)
         closed = closed_in(after)
-        new = (sticking & (closed | parted)) | (rough & closed)
-        if (new == sticking).all():
+        next_sticking = (sticking & (closed | parted)) | (rough & closed)
+        if (next_sticking == sticking).all():
             shear[np.abs(shear) <= impulse] = 0.0
             return after, normal, shear
-        parted |= sticking & ~new
-        sticking = new
+        parted |= sticking & ~next_sticking
+        sticking = next_sticking
 
 
-def _with_sticking(before: Array, opens: Array, slips: Array, sticking: Flags) -> tuple[Array, Array, Array]:
-    """As `_projected`, for joints of which it is known whether they are held."""
-    free = null_space(slips[sticking]) if sticking.any() else np.eye(len(before))
-    rates = opens @ free
+def _solved_with_sticking(before: Array, opens: Array, slips: Array, sticking: Flags) -> tuple[Array, Array, Array]:
+    """As `_velocity_and_impulses`, for joints of which it is known whether they are held."""
+    basis = null_space(slips[sticking]) if sticking.any() else np.eye(len(before))
+    rates = opens @ basis
     rates[np.linalg.norm(rates, axis=1) <= IMPACT_ROUNDING * np.linalg.norm(opens, axis=1)] = (
         0.0  # ends that cannot move
     )
-    normal, shear = _nearest(rates, free.T @ before), np.zeros(len(slips))
-    after = free @ (free.T @ (before + opens.T @ normal))
+    normal, shear = _nearest_impulses(rates, basis.T @ before), np.zeros(len(slips))
+    after = basis @ (basis.T @ (before + opens.T @ normal))
     shear[sticking] = np.linalg.lstsq(slips[sticking].T, after - before - opens.T @ normal, rcond=None)[0]
     return after, normal.reshape(-1, 2), shear
 
 
-def _nearest(opens: Array, before: Array) -> Array:
+def _nearest_impulses(opens: Array, before: Array) -> Array:
     """The impulses p >= 0 that take a velocity to the nearest one at which nothing penetrates, shape (m,).
 
     They minimise |before + opens' p|, by the active-set method of Lawson and Hanson. Ends that are pressed are found
@@ -188,8 +188,8 @@ def _nearest(opens: Array, before: Array) -> Array:
         closing = np.where(active | excluded, 0.0, rows @ (aim + impulses @ rows))
         if closing.min() >= -EXACT:
             return impulses * scale / sizes
-        new = int(closing.argmin())
-        active[new] = True
+        entering = int(closing.argmin())
+        active[entering] = True
         while True:
             trial = np.zeros(len(opens))
             trial[active] = np.linalg.lstsq(rows[active].T, -aim, rcond=EXACT)[0]
@@ -200,7 +200,7 @@ def _nearest(opens: Array, before: Array) -> Array:
             impulses = impulses + share.min() * (trial - impulses)
             active[np.flatnonzero(negative)[share.argmin()]] = False
             impulses[~active] = 0.0
-        excluded[new] = not active[new]  # it closes by a rounding error
+        excluded[entering] = not active[entering]  # it closes by a rounding error
         impulses = trial
     raise RuntimeError(
         f"no impulses were found in {MOST_CHANGES * len(opens)} changes of the set of ends that are pressed"

@@ -152,8 +152,8 @@ def required_tasks(tasks: object) -> Iterable[Task]:
 def _carry_out(run: Runner, pending: Iterator[Job], executor: Executor | None, count: int) -> None:
     """Run the jobs where they are to run."""
     if executor is None and run.limit is None and count == 1:
-        in_turn = run.progress.total is None  # an iterator may look at the rows before its next task
-        while jobs := list(islice(pending, 1 if in_turn else run.chunk())):
+        one_by_one = run.progress.total is None  # an iterator may look at the rows before its next task
+        while jobs := list(islice(pending, 1 if one_by_one else run.chunk())):
             run.run_here(jobs)
         return
     try:
@@ -227,13 +227,13 @@ class Runner:
         labels: dict[str, dict[str, object]] = {}
         for position, (key, task) in enumerate(keyed_tasks):
             self.seen += 1
-            if (first := labels.setdefault(key, dict(task.labels))) != task.labels:
-                same = f"the case labelled {dict(task.labels)} is that labelled {first}"
-                self.progress.warned.add(f"{same}, whose row stands for both: they differ in labels alone", "same")
+            if (first_labels := labels.setdefault(key, dict(task.labels))) != task.labels:
+                clash = f"the case labelled {dict(task.labels)} is that labelled {first_labels}"
+                self.progress.warned.add(f"{clash}, whose row stands for both: they differ in labels alone", "same")
             history = None if self.folder is None else self.folder / f"{key}.npz"
             status = statuses.get(key)
-            kept = status in ("failed", "taken") or history is None or history.exists()
-            if status is not None and kept and not (self.retry and status == "failed"):
+            is_kept = status in ("failed", "taken") or history is None or history.exists()
+            if status is not None and is_kept and not (self.retry and status == "failed"):
                 self.progress.skipped += 1
                 continue
             statuses[key] = "taken"
@@ -346,7 +346,7 @@ class Runner:
             return jobs
         (job,) = jobs
         if isinstance(error, ProcessExpired):
-            return self.died(job, error.exitcode or 0)
+            return self.job_after_death(job, error.exitcode or 0)
         if isinstance(error, TimeoutError) and self.limit is not None:
             row = failed_row(TimeoutError(f"the case took longer than the time limit of {self.limit:g} s"))
             self.write(jobs, [row | {"seconds": self.limit}])
@@ -356,16 +356,16 @@ class Runner:
             self.write(jobs, [failed_row(error)])
         return ()
 
-    def died(self, job: Job, exitcode: int) -> Sequence[Job]:
+    def job_after_death(self, job: Job, exitcode: int) -> Sequence[Job]:
         """The job whose process has died, if it was killed and is to be tried again."""
         job.deaths += 1
         if exitcode < 0 and job.deaths <= MOST_DEATHS:
             return [job]
         if exitcode < 0:
-            how = f"was killed by {signal.Signals(-exitcode).name}"
+            ending = f"was killed by {signal.Signals(-exitcode).name}"
         else:
             cause = ", as after a fatal error of MuJoCo, which MUJOCO_LOG.TXT would hold" if exitcode == 1 else ""
-            how = f"ended with exit status {exitcode % EXIT_FOR_ZERO}{cause}"
-        often = f", {job.deaths} times in all" if job.deaths > 1 else ""
-        self.write([job], [failed_row(RuntimeError(f"its worker process {how}{often}"))])
+            ending = f"ended with exit status {exitcode % EXIT_FOR_ZERO}{cause}"
+        repetition = f", {job.deaths} times in all" if job.deaths > 1 else ""
+        self.write([job], [failed_row(RuntimeError(f"its worker process {ending}{repetition}"))])
         return ()

@@ -49,8 +49,8 @@ class Workers:
         """The rows of the first tasks; raises whatever pickle does for a task that it cannot take."""
         content = pickle.dumps(list(tasks))
         with interrupts_held_back():  # the first call starts the processes, and one that is cut off would leave some
-            found: Future[list[Row]] = self.pool.schedule(serve, (content,), timeout=self.limit)
-        return found
+            rows: Future[list[Row]] = self.pool.schedule(serve, (content,), timeout=self.limit)
+        return rows
 
     def __enter__(self) -> Workers:
         return self
@@ -67,7 +67,7 @@ class _Worker(SpawnProcess):
 
     def start(self) -> None:
         """Start it."""
-        with _uninterrupted():
+        with _interrupts_blocked():
             super().start()
 
     def __getstate__(self) -> dict[str, object]:
@@ -111,17 +111,17 @@ def _start_tracker() -> None:
 
 
 @contextlib.contextmanager
-def _uninterrupted() -> Iterator[None]:
+def _interrupts_blocked() -> Iterator[None]:
     """Start processes to which Ctrl-C does not go, not even while they start."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
     _start_tracker()  # it would unblock the signal as it starts
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    blocked_before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, blocked_before)
 
 
 def start_worker() -> None:

@@ -30,11 +30,11 @@ class WarningCounter:
         self.counts[kind] += 1
         return self.texts.setdefault(kind, text) is text
 
-    def lines(self, what: str = "warned", most: int | None = None) -> list[str]:
+    def lines(self, event: str = "warned", limit: int | None = None) -> list[str]:
         """A line for each kind with how often it came, the most frequent first."""
         return [
-            f"{what} once: {self.texts[kind]}" if count == 1 else f"{what} {count} times, first: {self.texts[kind]}"
-            for kind, count in self.counts.most_common(most)
+            f"{event} once: {self.texts[kind]}" if count == 1 else f"{event} {count} times, first: {self.texts[kind]}"
+            for kind, count in self.counts.most_common(limit)
         ]
 
 
@@ -57,12 +57,12 @@ def closing_line(
     time that it took [s], and how many of the total are left; a total of None is not known.
     """
     rows = kept + sum(statuses.values())
-    of = "" if total is None else f" of {total}"
-    left = "" if total is None or rows >= total else f", {total - rows} left; the same call carries on"
-    done = f"{statuses.get('done', 0)} done, {statuses.get('failed', 0)} failed"
-    ended = f" ({counts_text(outcomes)})" if outcomes else ""
-    before = f", {kept} had a row before" if kept else ""
-    return f"{rows}{of} tasks have a row: {done}{ended} in {seconds:.3g} s{before}{left}"
+    of_total = "" if total is None else f" of {total}"
+    left_text = "" if total is None or rows >= total else f", {total - rows} left; the same call carries on"
+    done_text = f"{statuses.get('done', 0)} done, {statuses.get('failed', 0)} failed"
+    endings = f" ({counts_text(outcomes)})" if outcomes else ""
+    kept_text = f", {kept} had a row before" if kept else ""
+    return f"{rows}{of_total} tasks have a row: {done_text}{endings} in {seconds:.3g} s{kept_text}{left_text}"
 
 
 def status(path: str | Path) -> str:
@@ -148,8 +148,8 @@ class CampaignProgress:
             self.bar.update(self.skipped + finished - self.bar.n)
         elif now - self.last_line >= LINE_INTERVAL:
             self.last_line = now
-            of = "" if self.total is None else f" of {self.total}"
-            self._print(", ".join([f"{self.skipped + finished}{of} cases", *parts]))
+            of_total = "" if self.total is None else f" of {self.total}"
+            self._print(", ".join([f"{self.skipped + finished}{of_total} cases", *parts]))
 
     def _rate(self, finished: int, now: float) -> float:
         """Cases in a second since the first that ended, as workers take some time to start; 0 for fewer than

@@ -68,7 +68,7 @@ class Store:
                 self._rows = sqlite3.connect(self.path, isolation_level=None)
                 self._open(writing)
             except UNREADABLE as error:
-                raise self._explained(error) from None
+                raise self._explained_error(error) from None
             self._known = self.columns
         except BaseException:
             self.close()
@@ -94,7 +94,7 @@ class Store:
             raise FileNotFoundError(f"{damaged}: there is no such campaign")
         if path.exists():
             raise FileExistsError(f"{path} exists already; rows are rescued into a new file")
-        return cls._written(path, readable(damaged))
+        return cls._write_new(path, readable(damaged))
 
     @classmethod
     def join(cls, parts: Iterable[str | Path], path: str | Path, tasks: Iterable[Task]) -> int:
@@ -116,19 +116,19 @@ class Store:
         path = require_path("path", path)
         if path.exists():
             raise FileExistsError(f"{path} exists already; rows are joined into a new file")
-        found: dict[str, Row] = {}
+        kept: dict[str, Row] = {}
         for part in parts:
             with cls(part) as store:
-                found |= {row["key"]: row for row in store.rows() if row["status"] == "done" or row["key"] not in found}
+                kept |= {row["key"]: row for row in store.rows() if row["status"] == "done" or row["key"] not in kept}
         positions: dict[str, int] = {}
         with warnings.catch_warnings():  # a task warned as it was made for the run
             warnings.simplefilter("ignore", UserWarning)
             for position, task in enumerate(tasks):
                 positions.setdefault(keyed(task)[0], position)
-        return cls._written(path, [found[key] | {"position": at} for key, at in positions.items() if key in found])
+        return cls._write_new(path, [kept[key] | {"position": i} for key, i in positions.items() if key in kept])
 
     @classmethod
-    def _written(cls, path: Path, rows: Sequence[Row]) -> int:
+    def _write_new(cls, path: Path, rows: Sequence[Row]) -> int:
         """Write rows into a new store, and return how many."""
         with cls(path, writing=True) as store:
             store.add_columns(dict.fromkeys(name for row in rows for name in row if name not in ROW_COLUMNS))
@@ -161,7 +161,7 @@ class Store:
             self._rows.execute(f"CREATE TABLE cases ({columns}, PRIMARY KEY (key))")
             self._rows.execute("COMMIT")
 
-    def _explained(self, error: Exception) -> Exception:
+    def _explained_error(self, error: Exception) -> Exception:
         """What an error of SQLite means for the user."""
         code = getattr(error, "sqlite_errorcode", None)
         if code is not None and code & 0xFF in ENVIRONMENT and code != sqlite3.SQLITE_IOERR_SHORT_READ:
@@ -180,7 +180,7 @@ class Store:
             cursor = self._rows.execute(query)
             return [column[0] for column in cursor.description], cursor.fetchall()
         except UNREADABLE as error:
-            raise self._explained(error) from None
+            raise self._explained_error(error) from None
 
     def __enter__(self) -> Store:
         return self
@@ -260,26 +260,26 @@ class Store:
                 self._rows.execute("ROLLBACK")
             if not isinstance(error, UNREADABLE):
                 raise
-            explained = self._explained(error)
+            explained = self._explained_error(error)
             if isinstance(explained, OSError):
                 explained = OSError(f"{explained}; what is in it is kept, and the same call carries on from there")
             raise explained from None
 
     def statuses(self) -> dict[str, str]:
         """Status by key: "done" or "failed"."""
-        return {row["key"]: row["status"] for row in self._verified()}
+        return {row["key"]: row["status"] for row in self._verified_rows()}
 
     def __len__(self) -> int:
         """How many rows there are."""
         return int(self._query("SELECT count(*) FROM cases")[1][0][0])
 
-    def _verified(self) -> Iterator[Row]:
+    def _verified_rows(self) -> Iterator[Row]:
         """The rows in the order of their tasks, each verified by its checksum."""
         names, rows = self._query("SELECT * FROM cases ORDER BY position, key")
         for values in rows:
             row = dict(zip(names, values, strict=True))
             if row.pop(CHECKSUM) != checksum(row):
-                raise self._explained(ValueError("a row is not as it was written"))
+                raise self._explained_error(ValueError("a row is not as it was written"))
             yield row
 
     def rows(self, **where: object) -> list[Row]:
@@ -292,7 +292,7 @@ class Store:
         if unknown:
             raise ValueError(f"there is no column {', '.join(sorted(unknown))}; there are {', '.join(self.columns)}")
         requested = {name: table_value(value) for name, value in where.items()}
-        return [row for row in self._verified() if all(row[name] == value for name, value in requested.items())]
+        return [row for row in self._verified_rows() if all(row[name] == value for name, value in requested.items())]
 
     def csv(self, *, timings: bool = True) -> str:
         """The rows as CSV text; without timings it is the same however the campaign went, killed and resumed or not.

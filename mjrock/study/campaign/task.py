@@ -53,8 +53,8 @@ def table_text(value: object) -> str:
 
 def checksum(row: Mapping[str, Value]) -> int:
     """The checksum of a row, whatever the order of its columns; a column that is None counts as one that is absent."""
-    held = sorted((name, value) for name, value in row.items() if value is not None)
-    return zlib.crc32(repr(held).encode())
+    cells = sorted((name, value) for name, value in row.items() if value is not None)
+    return zlib.crc32(repr(cells).encode())
 
 
 def fingerprint(*contents: object) -> str:
@@ -86,7 +86,7 @@ def _add_content(value: object, add: Callable[[bytes], None]) -> None:
         add(type(value).__name__.encode())
         if formula := getattr(type(value), "formula", ""):  # of a law of the user
             add(formula.encode())
-        for name in _compared(type(value)):
+        for name in _compared_fields(type(value)):
             add(name.encode())
             _add_content(getattr(value, name), add)
     elif isinstance(value, np.ndarray):
@@ -102,7 +102,7 @@ def _add_content(value: object, add: Callable[[bytes], None]) -> None:
 
 
 @cache
-def _compared(kind: type) -> tuple[str, ...]:
+def _compared_fields(kind: type) -> tuple[str, ...]:
     """The fields of a dataclass that take part in comparison."""
     return tuple(field.name for field in dataclasses.fields(kind) if field.compare)
 
@@ -141,13 +141,13 @@ class RefusedTask:
     @classmethod
     def because(cls, error: BaseException, labels: Mapping[str, object]) -> RefusedTask:
         """The task of these labels, that cannot be run because of the error. Labels that no table holds become text."""
-        held: dict[str, object] = {}
+        cells: dict[str, object] = {}
         for name, value in labels.items():
             try:
-                held[name] = table_value(value)
+                cells[name] = table_value(value)
             except ValueError:
-                held[name] = table_text(value)
-        return cls(failed_row(error)["error"], held)
+                cells[name] = table_text(value)
+        return cls(failed_row(error)["error"], cells)
 
     def __call__(self, history: Path | None = None) -> Row:
         """Fail with the error."""
@@ -181,7 +181,7 @@ def column_names(task: Task) -> tuple[str, ...]:
     that are the same clash, and stay in the answer: `Store.add_columns` refuses them.
     """
     labels, columns = task.labels, task.COLUMNS
-    repeated = {n for n in labels if n in columns and getattr(task, n, None) == labels[n]}
+    repeated = {name for name in labels if name in columns and getattr(task, name, None) == labels[name]}
     return (*labels, *(name for name in columns if name not in repeated))
 
 
@@ -199,12 +199,12 @@ def carry_out(task: Task, history: Path | None) -> Row:
     return row | {"seconds": time.perf_counter() - started}
 
 
-def _cell_of(what: str, value: object) -> Value:
+def _cell_of(name: str, value: object) -> Value:
     """A value as a table holds it. Raises a ValueError with its name for one that no table holds."""
     try:
         return table_value(value)
     except ValueError as error:
-        raise ValueError(f"{what}: {error}") from None
+        raise ValueError(f"{name}: {error}") from None
 
 
 def failed_row(error: BaseException) -> Row:
@@ -269,8 +269,8 @@ class Grid(Sequence[Task]):
         try:
             task = self.build(**point)
         except ValueError as error:
-            at = ", ".join(f"{name} = {value}" for name, value in self._labels(point).items())
-            raise ValueError(f"{error} (at {at})") from error
+            point_text = ", ".join(f"{name} = {value}" for name, value in self._labels(point).items())
+            raise ValueError(f"{error} (at {point_text})") from error
         return labelled(task, self._labels(point))
 
     def _point(self, index: int) -> dict[str, object]:
@@ -286,9 +286,9 @@ def _axis_values(name: str, values: object) -> list[object]:
     """The values of an axis. Raises a TypeError or ValueError with its name if there are none."""
     if not (isinstance(values, str) or is_iterable(values)):
         raise TypeError(f"the axis {name} = {shown(values)} is not a row of values")
-    if not (found := listed(f"the axis {name}", values)):
+    if not (listed_values := listed(f"the axis {name}", values)):
         raise ValueError(f"the axis {name} has no values")
-    return found
+    return listed_values
 
 
 def labelled(task: Task, labels: Mapping[str, object]) -> Task:

@@ -80,15 +80,15 @@ class Plan:
             if not values:
                 raise ValueError(f"{name} is empty; at least one value is needed")
         for name, low, high in (("k_n", 1e4, 1e14), ("amplitude", 0.01, 0.95)):
-            first, last = require_array(name, getattr(self, name), (2,)).tolist()
-            require_within(f"{name}, lower end", first, low, high)
-            require_within(f"{name}, upper end", last, first, high)
-            keep(self, **{name: (first, last)})
+            lower, upper = require_array(name, getattr(self, name), (2,)).tolist()
+            require_within(f"{name}, lower end", lower, low, high)
+            require_within(f"{name}, upper end", upper, lower, high)
+            keep(self, **{name: (lower, upper)})
 
     def base_tasks(self, points: int, measure: str = "restitution", accuracy: float = 1e-4) -> list[Match]:
         """Two-sided matches; `measure` and `accuracy` are those of `Match`."""
         return [
-            Match(combination, Restitution(_housner(combination) ** share, -0.5), points, None, measure, accuracy)
+            Match(combination, Restitution(_housner_e(combination) ** share, -0.5), points, None, measure, accuracy)
             for combination in combinations(self.base_count, self.seed, self.k_n, self.amplitude)
             for share in self.losses
         ]
@@ -101,9 +101,9 @@ class Plan:
         """
         tasks = []
         for i, combination in enumerate(combinations(self.side_count, self.seed + 1, self.k_n, self.amplitude)):
-            e_base = _housner(combination) ** self.side_losses[i % len(self.side_losses)]
+            e_base = _housner_e(combination) ** self.side_losses[i % len(self.side_losses)]
             if not LEAST_XI < _base_damping(combination, Restitution(e_base, -0.5), base) < HIGHEST_XI:
-                e_base = _housner(combination)
+                e_base = _housner_e(combination)
             for side in self.sides:
                 e = Restitution(e_base, -side)
                 xi_base = presumed_damping(combination, e, base)
@@ -111,7 +111,7 @@ class Plan:
         return tasks
 
 
-def _housner(combination: Combination) -> float:
+def _housner_e(combination: Combination) -> float:
     return Restitution.from_geometry(combination.wall).base
 
 
@@ -234,7 +234,7 @@ def r_squared(predicted: Array, xi: Array) -> float:
 
 def coefficients(form: type) -> list[str]:
     """Names of the coefficients of a form."""
-    return [name.name for name in fields(form) if name.name != "r_squared"]
+    return [entry.name for entry in fields(form) if entry.name != "r_squared"]
 
 
 def well_matched(row: Row) -> bool:
@@ -268,8 +268,8 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row]) -> Regressi
     loss = np.array([task.loss for task, _ in reached])
     xi = np.array([row["xi"] for _, row in reached])
     combinations = [task.combination for task, _ in reached]
-    place = {combination: i for i, combination in enumerate(dict.fromkeys(combinations))}
-    fold = np.array([place[combination] % FOLDS for combination in combinations])
+    number = {combination: i for i, combination in enumerate(dict.fromkeys(combinations))}
+    fold = np.array([number[combination] % FOLDS for combination in combinations])
     start = np.array(STARTS[form])
     bounds = (1e-12, math.inf) if form is PowerLaw else tasks[0].bounds  # the paper's form has none
 
@@ -277,22 +277,22 @@ def regress(form: type, tasks: Sequence[Match], rows: Sequence[Row]) -> Regressi
         fitted: Form = form(*values, r_squared=math.nan)
         return np.asarray(np.clip(fitted.xi(groups, loss), *bounds))
 
-    def fit(kept: Flags, begin: Array) -> OptimizeResult:
+    def fit(included: Flags, guess: Array) -> OptimizeResult:
         def residuals(values: Array) -> Array:
-            return np.asarray(np.log(predict(values) / xi)[kept])
+            return np.asarray(np.log(predict(values) / xi)[included])
 
-        return least_squares(residuals, begin, x_scale=np.abs(start), loss="soft_l1", f_scale=0.1)
+        return least_squares(residuals, guess, x_scale=np.abs(start), loss="soft_l1", f_scale=0.1)
 
-    everything = fit(np.ones(len(xi), dtype=bool), start)
-    predicted = predict(everything.x)
+    full_fit = fit(np.ones(len(xi), dtype=bool), start)
+    predicted = predict(full_fit.x)
     unseen = np.empty_like(xi)
     for part in range(FOLDS):
         if (fold == part).any():
-            unseen[fold == part] = predict(fit(fold != part, everything.x).x)[fold == part]
-    variance = 2 * everything.cost / (len(xi) - len(names))
-    spread = np.sqrt(np.diag(np.linalg.pinv(everything.jac.T @ everything.jac)) * variance)
+            unseen[fold == part] = predict(fit(fold != part, full_fit.x).x)[fold == part]
+    variance = 2 * full_fit.cost / (len(xi) - len(names))
+    spread = np.sqrt(np.diag(np.linalg.pinv(full_fit.jac.T @ full_fit.jac)) * variance)
     return Regression(
-        form=form(*everything.x.tolist(), r_squared=r_squared(predicted, xi)),
+        form=form(*full_fit.x.tolist(), r_squared=r_squared(predicted, xi)),
         errors=dict(zip(names, spread.tolist(), strict=True)),
         xi=xi,
         predicted=predicted,

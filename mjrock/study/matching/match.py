@@ -219,8 +219,8 @@ class Match:
     def __call__(self, history: Path | None = None) -> Row:
         """Search, and return the columns."""
         if self.measure == "rms":
-            least = least_difference(self.difference, self.bounds)
-            return least.row | {"found": self.restitution(least.xi), "rms": least.found}
+            closest = least_difference(self.difference, self.bounds)
+            return closest.row | {"found": self.restitution(closest.xi), "rms": closest.found}
         return highest_branch(self.restitution, self.target, self.bounds, whole=self.xi_base is None).row
 
 
@@ -259,38 +259,38 @@ def highest_branch(
     fall again the branch of high damping has ended, and what lies below is not looked at. Without `whole` it stops
     looking where the target is passed, and `highest` is what it has seen.
     """
-    at, grid = _searched(measure, bounds)
+    value, grid = _measure_and_grid(measure, bounds)
     bottom = top = grid[0]
-    for here in grid[1:]:
-        if at(here) < at(top) and at(top) > at(bottom):
+    for log_xi in grid[1:]:
+        if value(log_xi) < value(top) and value(top) > value(bottom):
             break  # the branch has ended
-        if at(here) < at(bottom):
-            bottom = here  # overdamped: a little less damping loses more
-        top = here
-        if at(bottom) < target <= at(top) and not whole:
+        if value(log_xi) < value(bottom):
+            bottom = log_xi  # overdamped: a little less damping loses more
+        top = log_xi
+        if value(bottom) < target <= value(top) and not whole:
             break
-    lowest, highest = at(bottom), at(top)
+    lowest, highest = value(bottom), value(top)
     if not lowest < target <= highest:
         best = top if target > highest else bottom
-        return Closest(False, math.exp(best), at(best), lowest, highest, at.cache_info().currsize)
-    best = float(brentq(lambda log_xi: at(log_xi) - target, top, bottom, xtol=XI_TOLERANCE))
-    reached = abs(at(best) / target - 1) < E_TOLERANCE  # a wall that no longer rocks drops to 0 from one xi to the next
-    return Closest(reached, math.exp(best), at(best), lowest, highest, at.cache_info().currsize)
+        return Closest(False, math.exp(best), value(best), lowest, highest, value.cache_info().currsize)
+    best = float(brentq(lambda log_xi: value(log_xi) - target, top, bottom, xtol=XI_TOLERANCE))
+    reached = abs(value(best) / target - 1) < E_TOLERANCE  # |e| drops to 0 where the wall no longer rocks
+    return Closest(reached, math.exp(best), value(best), lowest, highest, value.cache_info().currsize)
 
 
 def least_difference(measure: Callable[[float], float], bounds: tuple[float, float]) -> Closest:
     """The damping ratio at which `measure`, a difference, is least; not reached where that is at a bound."""
-    at, grid = _searched(measure, bounds)
-    values = [at(here) for here in grid]
+    value, grid = _measure_and_grid(measure, bounds)
+    values = [value(log_xi) for log_xi in grid]
     i = int(np.argmin(values))
     best, inside = grid[i], 0 < i < len(grid) - 1
     if inside:
-        minimum = minimize_scalar(at, bounds=(grid[i + 1], grid[i - 1]), method="bounded", options={"xatol": 1e-2})
-        best, inside = min(grid[i], float(minimum.x), key=at), bool(minimum.success)
-    return Closest(inside, math.exp(best), at(best), min(values), max(values), at.cache_info().currsize)
+        minimum = minimize_scalar(value, bounds=(grid[i + 1], grid[i - 1]), method="bounded", options={"xatol": 1e-2})
+        best, inside = min(grid[i], float(minimum.x), key=value), bool(minimum.success)
+    return Closest(inside, math.exp(best), value(best), min(values), max(values), value.cache_info().currsize)
 
 
-def _searched(measure: Callable[[float], float], bounds: tuple[float, float]) -> tuple[Any, list[float]]:
+def _measure_and_grid(measure: Callable[[float], float], bounds: tuple[float, float]) -> tuple[Any, list[float]]:
     """The measure over ln xi, which remembers what it has simulated, and the grid on which a search goes down."""
     low, high = (math.log(bound) for bound in bounds)
     grid = np.linspace(high, low, 1 + math.ceil((high - low) / math.log(SCAN))).tolist()

@@ -114,11 +114,11 @@ def matched_contacts(
     top = 2 * wall.h if not isinstance(side_stop, SideStop) else min(side_stop.top, 2 * wall.h)
     if difference := e.difference_from(wall, top if k_side is not None else None):
         warn_of(difference, Implausible)
-    standing = GivenWall(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
-    match = partial(Match, standing, e, points, accuracy=accuracy, friction=friction, side_friction=side_friction)
-    xi_base, xi_side = _matched(match()), 0.0
+    given_wall = GivenWall(wall, k_base, k_base if k_side is None else k_side, amplitude, side_stop)
+    match = partial(Match, given_wall, e, points, accuracy=accuracy, friction=friction, side_friction=side_friction)
+    xi_base, xi_side = _matched_xi(match()), 0.0
     if k_side is not None:
-        xi_side = _matched(match(xi_base=xi_base))
+        xi_side = _matched_xi(match(xi_base=xi_base))
     return Contacts.from_damping(
         wall,
         k_base=k_base,
@@ -163,18 +163,18 @@ def as_theory(
     if abs(e.base / theory - 1) > UNLIKE_EQ_2:
         warn_of(f"a stiff base gives e_2s = {theory:.4g} of Eq. 2, and not {e.base:.4g}")
     remaining = (e.lumped if side_stop else e.base) ** (2 * rebounds)
-    last = wall.rotation_at(remaining * float(wall.potential_energy(amplitude * wall.alpha)))
-    uplift = min(last / STIFF_AS_THEORY, LARGEST_UPLIFT * wall.alpha)
+    last_rebound = wall.rotation_at(remaining * float(wall.potential_energy(amplitude * wall.alpha)))
+    uplift = min(last_rebound / STIFF_AS_THEORY, LARGEST_UPLIFT * wall.alpha)
     k_n = wall.weight / (2 * wall.base_length * wall.half_base**2 * uplift)
     xi_base, xi_side = PLASTIC_TOUCH_DOWN / wall.slenderness, 0.0
     if side_stop:
-        xi_side = _matched(Match(GivenWall(wall, k_n, k_n, amplitude), e, 2, xi_base))
+        xi_side = _matched_xi(Match(GivenWall(wall, k_n, k_n, amplitude), e, 2, xi_base))
     return Contacts.from_damping(
         wall, k_base=k_n, xi_base=xi_base, k_side=k_n if side_stop else None, xi_side=xi_side, law="as theory"
     )
 
 
-def _matched(match: Match) -> float:
+def _matched_xi(match: Match) -> float:
     """The damping ratio that is matched, with a warning where the match is missed."""
     with Bar(f"matching the {match.face}", "runs") as bar:
 
@@ -190,8 +190,8 @@ def _matched(match: Match) -> float:
 
 def missed(face: str, closest: Closest, target: float) -> str:
     """The text of a warning for a search that has missed its target."""
-    found = f"the closest, xi = {closest.xi:.3g}, gives {closest.found:.4g}"
-    return f"no damping of the {face} gives |e| = {target:.4g}; {found}"
+    outcome = f"the closest, xi = {closest.xi:.3g}, gives {closest.found:.4g}"
+    return f"no damping of the {face} gives |e| = {target:.4g}; {outcome}"
 
 
 def matched_masonry(
@@ -237,23 +237,23 @@ def matched_masonry(
     frequency = reference_frequency(stack.wall, k_n, int(points))
     xi = np.full(len(masonry.joints), 0.5 * frequency * damping_above(stack))
 
-    def damped(whole: Masonry) -> Masonry:
+    def damped(undamped: Masonry) -> Masonry:
         values = tuple((joint.name, float(value)) for joint, value in zip(masonry.joints, xi, strict=True))
-        return dataclasses.replace(whole, law=None, frequency=frequency, xi=ByName(values))
+        return dataclasses.replace(undamped, law=None, frequency=frequency, xi=ByName(values))
 
-    def base(value: float) -> float:
+    def base_e(value: float) -> float:
         xi[stack.base] = value
         return rebound(damped(stack.free_standing), amplitude, accuracy)
 
-    def side(value: float) -> float:
+    def side_e(value: float) -> float:
         xi[list(stack.sides)] = value
         return rebound(damped(masonry), amplitude, accuracy)
 
-    if abs(excess(base(PLASTIC_TOUCH_DOWN / stack.wall.slenderness), e.base)) > PLASTIC_WITHIN:
-        xi[stack.base] = _warned_xi("base", highest_branch(base, e.base, BASE_BOUNDS), e.base)
+    if abs(excess(base_e(PLASTIC_TOUCH_DOWN / stack.wall.slenderness), e.base)) > PLASTIC_WITHIN:
+        xi[stack.base] = _warned_xi("base", highest_branch(base_e, e.base, BASE_BOUNDS), e.base)
     if stack.sides:
         lumped = abs(e.lumped)
-        xi[list(stack.sides)] = _warned_xi("side", highest_branch(side, lumped, SIDE_BOUNDS, whole=False), lumped)
+        xi[list(stack.sides)] = _warned_xi("side", highest_branch(side_e, lumped, SIDE_BOUNDS, whole=False), lumped)
     return damped(masonry)
 
 
@@ -294,9 +294,9 @@ def excess(obtained: float, target: float) -> float:
 
 def _warned_xi(face: str, closest: Closest, target: float) -> float:
     """The damping ratio that is found, with a warning where it loses another energy than required."""
-    more = excess(closest.found, target)
-    if abs(more) > ENERGY_MISS_WARNED_OF:
-        warn_of(f"{missed(face, closest, target)} and loses {1 + more:.3g} of the energy that is to be lost")
+    surplus = excess(closest.found, target)
+    if abs(surplus) > ENERGY_MISS_WARNED_OF:
+        warn_of(f"{missed(face, closest, target)} and loses {1 + surplus:.3g} of the energy that is to be lost")
     return closest.xi
 
 
