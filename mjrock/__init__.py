@@ -150,8 +150,8 @@ PUBLIC_MODULES = ("blocks", "plotting")
 
 def _png_of(shown: object) -> bytes | None:
     """The picture of a problem or an answer as a PNG, for notebooks."""
-    made: bytes | None = importlib.import_module(".plotting.notebook", __name__).png_of(shown)
-    return made
+    png: bytes | None = importlib.import_module(".plotting.notebook", __name__).png_of(shown)
+    return png
 
 
 NotebookPicture._png_of = staticmethod(_png_of)

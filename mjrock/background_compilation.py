@@ -51,7 +51,7 @@ class Run(NamedTuple):
     """A call of a solver, which another process can repeat."""
 
     solver: Callable[..., object]
-    given: dict[str, object]
+    arguments: dict[str, object]
 
 
 class _Process:
@@ -64,14 +64,14 @@ class _Process:
         self.started = self.ended = 0
 
 
-_here = _Process()
+_process = _Process()
 _run: ContextVar[Run | None] = ContextVar("run", default=None)
 
 
 @contextlib.contextmanager
-def first_answer(solver: Callable[..., object], **given: object) -> Iterator[None]:
+def first_answer(solver: Callable[..., object], **arguments: object) -> Iterator[None]:
     """Let loops that are not stored run as plain Python in this block, which is a call of a solver."""
-    token = _run.set(Run(solver, given) if _wanted() else None)
+    token = _run.set(Run(solver, arguments) if _is_wanted() else None)
     try:
         yield
     finally:
@@ -83,26 +83,26 @@ def compiles() -> bool:
     return os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" and importlib.util.find_spec("numba") is not None
 
 
-def _wanted() -> bool:
+def _is_wanted() -> bool:
     return compiles() and os.environ.get("MJROCK_INTERPRET") != "0"
 
 
 def expect(seconds: float) -> None:
     """Compile at once from here to the end of the block where plain Python would take too long [s]."""
-    if _here.taken + seconds > COMPILING:
+    if _process.taken + seconds > COMPILING:
         _run.set(None)
 
 
 def allowed(at_once: bool) -> bool:
     """Whether a loop that is not stored runs as plain Python here and now, unless it has to be compiled at once."""
-    return not at_once and _run.get() is not None and _here.taken < COMPILING
+    return not at_once and _run.get() is not None and _process.taken < COMPILING
 
 
 def news() -> int:
     """A number that grows when another process may have stored something."""
-    if _here.compiler is not None and _here.compiler.process.poll() is not None:
-        _here.compiler, _here.ended = None, _here.ended + 1
-    return _here.ended
+    if _process.compiler is not None and _process.compiler.process.poll() is not None:
+        _process.compiler, _process.ended = None, _process.ended + 1
+    return _process.ended
 
 
 def as_plain_python(function: Callable[..., Result], arguments: tuple[object, ...]) -> Result:
@@ -115,17 +115,17 @@ def as_plain_python(function: Callable[..., Result], arguments: tuple[object, ..
         with np.errstate(all="ignore"):  # compiled loops divide by zero without a word
             return function(*arguments)
     finally:
-        _here.taken += time.perf_counter() - begun
+        _process.taken += time.perf_counter() - begun
 
 
 def _hand_over(run: Run, function: Callable[..., object]) -> None:
     """Let another process make a run, for one of its loops, if there may be such a process."""
-    may_start = _here.started < MOST and cores() > 1 and not hasattr(sys, "frozen")  # which would start the program
-    if _here.compiler is None and may_start:
-        _here.started += 1
-        _here.compiler = Compiler()
-    if _here.compiler is not None:
-        _here.compiler.take(run, function)
+    may_start = _process.started < MOST and cores() > 1 and not hasattr(sys, "frozen")  # which would start the program
+    if _process.compiler is None and may_start:
+        _process.started += 1
+        _process.compiler = Compiler()
+    if _process.compiler is not None:
+        _process.compiler.take(run, function)
 
 
 def may_outlive() -> bool:
@@ -149,9 +149,9 @@ class Compiler:
         self._functions: set[Callable[..., object]] = set()
         self._run: Run | None = None
         self._runs: SimpleQueue[bytes | None] = SimpleQueue()
-        begin = f"from mjrock.compiler import serve; serve({LEFT if self.outlives else 0.0})"
+        command = f"from mjrock.compiler import serve; serve({LEFT if self.outlives else 0.0})"
         self.process: subprocess.Popen[bytes] = subprocess.Popen(
-            [sys.executable, "-c", f"import sys; sys.path = {sys.path!r}; {begin}"],
+            [sys.executable, "-c", f"import sys; sys.path = {sys.path!r}; {command}"],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -162,7 +162,7 @@ class Compiler:
         )
         self._writer = threading.Thread(target=self._write, daemon=True)
         self._writer.start()
-        atexit.register(self._leave)
+        atexit.register(self._finish_or_kill)
 
     def take(self, run: Run, function: Callable[..., object]) -> None:
         """Make a run, unless it or another one with this loop is made already."""
@@ -179,7 +179,7 @@ class Compiler:
                 pickle.dump(content, pipe)
                 pipe.flush()
 
-    def _leave(self) -> None:
+    def _finish_or_kill(self) -> None:
         """Leave it to finish, if it may, or end it."""
         self._runs.put(None)
         self._writer.join(timeout=5.0)

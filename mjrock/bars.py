@@ -59,15 +59,15 @@ def shown_bar(what: str, unit: str, total: float | None, **options: object) -> t
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     in_notebook = hasattr(shell, "kernel")  # of Jupyter, VS Code or Colab
     if in_notebook and importlib.util.find_spec("ipywidgets"):
-        from tqdm.notebook import tqdm as kind
+        from tqdm.notebook import tqdm as bar_type
     else:
-        kind = tqdm
-    form = PLAIN if total is None else OF_ALL
+        bar_type = tqdm
+    bar_format = PLAIN if total is None else OF_ALL
     if unit == "s":
-        form = form.replace("{n:.0f}", "{n:.2f}")
-    options = {"total": total, "desc": what, "unit": unit, "bar_format": form} | options
+        bar_format = bar_format.replace("{n:.0f}", "{n:.2f}")
+    options = {"total": total, "desc": what, "unit": unit, "bar_format": bar_format} | options
     silent = True if sys.stderr is None else None  # None: where it is no terminal
-    return kind(disable=False if in_notebook else silent, **options)
+    return bar_type(disable=False if in_notebook else silent, **options)
 
 
 class Bar:

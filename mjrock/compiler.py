@@ -33,7 +33,7 @@ def serve(grace_period: float) -> None:
     while content is not None:
         with contextlib.suppress(Exception):
             run: Run = pickle.loads(content)
-            run.solver(**run.given)
+            run.solver(**run.arguments)
         content = None if runs.empty() else runs.get()
     os._exit(0)  # the other thread reads standard input
 
@@ -45,9 +45,9 @@ def limit() -> None:
     with contextlib.suppress(ImportError):  # on Windows
         import resource
 
-        for name, most in ALLOWANCE.items():
+        for name, allowance in ALLOWANCE.items():
             with contextlib.suppress(ValueError, OSError):  # a smaller limit holds already
-                resource.setrlimit(getattr(resource, name), (most, most))
+                resource.setrlimit(getattr(resource, name), (allowance, allowance))
 
 
 def lock_of_store() -> Any:

@@ -20,11 +20,11 @@ def interrupts_held_back() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread() or not callable(handler):
         yield
         return
-    heard = []
-    signal.signal(signal.SIGINT, lambda *received: heard.append(received))
+    signals = []
+    signal.signal(signal.SIGINT, lambda *received: signals.append(received))
     try:
         yield
     finally:
         signal.signal(signal.SIGINT, handler)
-        if heard:
-            handler(*heard[0])
+        if signals:
+            handler(*signals[0])

@@ -55,9 +55,9 @@ def rates_matrix(values: Array, bodies: Integers, unknowns: int) -> csr_array:
     """
     rows, _, nv = values.shape
     columns = nv * bodies[:, :, None] + np.arange(nv)
-    there = np.broadcast_to(bodies[:, :, None] >= 0, values.shape)
-    begins = np.append(0, np.cumsum(nv * (bodies >= 0).sum(axis=1)))
-    matrix = csr_array((values[there], columns[there], begins), shape=(rows, unknowns))
+    is_free = np.broadcast_to(bodies[:, :, None] >= 0, values.shape)
+    row_starts = np.append(0, np.cumsum(nv * (bodies >= 0).sum(axis=1)))
+    matrix = csr_array((values[is_free], columns[is_free], row_starts), shape=(rows, unknowns))
     matrix.sum_duplicates()
     return matrix
 
@@ -77,15 +77,15 @@ def sum_of_pair_matrices(values: Array, bodies: Integers, unknowns: int) -> csr_
     unknown = np.where(bodies[:, :, None] < 0, -1, nv * bodies[:, :, None] + np.arange(nv)).reshape(-1, 2 * nv)
     unknown = unknown.astype(np.int32)
     rows, columns = np.broadcast_arrays(unknown[:, :, None], unknown[:, None])
-    there = (rows >= 0) & (columns >= 0) & (values != 0)
-    return csr_array((values[there], (rows[there], columns[there])), shape=(unknowns, unknowns))
+    is_entry = (rows >= 0) & (columns >= 0) & (values != 0)
+    return csr_array((values[is_entry], (rows[is_entry], columns[is_entry])), shape=(unknowns, unknowns))
 
 
 def block_diagonal(blocks: Array) -> csr_array:
     """The matrix with square blocks along its diagonal, shape (n k, n k), of blocks of the shape (n, k, k)."""
     (n, size, _), (block, row, column) = blocks.shape, np.nonzero(blocks)
-    there = np.array([size * block + row, size * block + column], dtype=np.int32)
-    return csr_array((blocks[block, row, column], tuple(there)), shape=(n * size, n * size))
+    positions = np.array([size * block + row, size * block + column], dtype=np.int32)
+    return csr_array((blocks[block, row, column], tuple(positions)), shape=(n * size, n * size))
 
 
 def summed(matrices: Sequence[csr_array]) -> csr_array:
@@ -169,8 +169,8 @@ class _Balance:
             motion, reaction = motion + correction[:n], reaction + correction[n:]
             unbalanced = force - self.stiffness @ motion - self.transpose @ reaction
             residual = np.append(unbalanced, -(self.constraints @ motion))
-            last, error = error, float(np.abs(residual).max())
-            if error < REFINED * scale or error > 0.5 * last:
+            last_error, error = error, float(np.abs(residual).max())
+            if error < REFINED * scale or error > 0.5 * last_error:
                 break
         return motion, reaction
 
@@ -264,7 +264,7 @@ def lowest_square(stiffness: csr_array, masses: Array, constraints: csr_array, r
     n, root = len(masses), 1 / np.sqrt(masses)
     stiffness = scaled_rows_and_columns(root, stiffness)
     if n <= SOLVED_IN_FULL:
-        return _lowest_in_full(stiffness, constraints.toarray() * root, rigid)
+        return _lowest_square_in_full(stiffness, constraints.toarray() * root, rigid)
     constraints = csr_array(constraints @ diags_array(root))
     # a bound is enough for the shift, and takes no search
     highest = highest_square(stiffness, np.ones(n)) if n <= MANY_UNKNOWNS else float(abs(stiffness).sum(axis=1).max())
@@ -283,10 +283,10 @@ def lowest_square(stiffness: csr_array, masses: Array, constraints: csr_array, r
         if resisted.size:
             return float(resisted[0])
         count *= 4
-    return _lowest_in_full(stiffness, constraints.toarray(), rigid)
+    return _lowest_square_in_full(stiffness, constraints.toarray(), rigid)
 
 
-def _lowest_in_full(stiffness: csr_array, constraints: Array, rigid: float) -> float:
+def _lowest_square_in_full(stiffness: csr_array, constraints: Array, rigid: float) -> float:
     """As `lowest_square`, of unit masses, by all squares of frequencies."""
     free = scipy.linalg.null_space(constraints, rcond=DEPENDENT)
     squares = np.linalg.eigvalsh(free.T @ (stiffness @ free)) if free.shape[1] else np.zeros(0)

@@ -38,21 +38,21 @@ FIELD = r"^    \w+: .*"
 @cache
 def _imports(path: Path) -> list[tuple[Path, list[str]]]:
     """The modules of the package that a module imports as it is imported itself, and which names of them."""
-    found = []
+    imports = []
     for dots, module, listed in IMPORT.findall(path.read_text(encoding="utf-8")):
         names, folder = re.findall(r"\w+", listed), path.parents[len(dots) - 1].joinpath(*module.split("."))
-        found += [(folder.with_suffix(".py"), names), *((folder / f"{name}.py", []) for name in names)]
-    return [(module, names) for module, names in found if module.is_file()]
+        imports += [(folder.with_suffix(".py"), names), *((folder / f"{name}.py", []) for name in names)]
+    return [(module, names) for module, names in imports if module.is_file()]
 
 
-def _has_compiled(text: str) -> bool:
+def _has_compiled_functions(text: str) -> bool:
     return "@compiled" in text or "@inlined" in text
 
 
 def _numbers(path: Path, names: list[str]) -> list[str]:
     """The constants of some names in a module without compiled functions, and the fields of its NamedTuples."""
     text, named = path.read_text(encoding="utf-8"), "|".join(names)
-    if not names or _has_compiled(text):
+    if not names or _has_compiled_functions(text):
         return []
     fields = re.findall(FIELD, "".join(re.findall(TUPLE.format(named), text, re.MULTILINE)), re.MULTILINE)
     return [*re.findall(CONSTANT.format(named), text, re.MULTILINE), *fields]
@@ -65,17 +65,17 @@ def stamp(path: Path) -> str:
     files that it calls, the constants and the order of the fields of what it is given, so that a change of any of these
     has to recompile it as well. Constants and fields may stand in modules without compiled functions.
     """
-    found, ahead = set(), [path]
-    while ahead:
-        module = ahead.pop()
-        if module not in found:
-            found.add(module)
-            ahead += [imported for imported, _ in _imports(module)]
+    modules, pending = set(), [path]
+    while pending:
+        module = pending.pop()
+        if module not in modules:
+            modules.add(module)
+            pending += [imported for imported, _ in _imports(module)]
     digest = hashlib.sha256()
-    for module in sorted(found):
+    for module in sorted(modules):
         text = module.read_text(encoding="utf-8")
-        if _has_compiled(text):
-            digest.update("\n".join([text, *(line for each in _imports(module) for line in _numbers(*each))]).encode())
+        if _has_compiled_functions(text):
+            digest.update("\n".join([text, *(line for pair in _imports(module) for line in _numbers(*pair))]).encode())
     return digest.hexdigest()
 
 
@@ -95,15 +95,15 @@ class LoopCache(FunctionCache):  # type: ignore[misc]
         Raises:
             NotStoredError: if there is none, and the run need not wait for it.
         """
-        if (stored := self._stored(*key)) is None:
+        if (stored := self._stored_overload(*key)) is None:
             if allowed(self._at_once):
                 raise NotStoredError
             self._lock()
-            if (stored := self._stored(*key)) is not None:
+            if (stored := self._stored_overload(*key)) is not None:
                 self._unlock()
         return stored
 
-    def _stored(self, *key: object) -> Any:
+    def _stored_overload(self, *key: object) -> Any:
         try:
             return super().load_overload(*key)
         except Exception:

@@ -24,7 +24,7 @@ def kernels() -> dict[str, str]:
     The environment variable OPENBLAS_CORETYPE names another one. Packages that bring no OpenBLAS of their own, as those
     of macOS and of conda, are left out.
     """
-    found = {}
+    names = {}
     for package in ("numpy", "scipy"):
         spec = importlib.util.find_spec(package)
         folder = Path(spec.origin if spec is not None and spec.origin else package).parent
@@ -33,8 +33,8 @@ def kernels() -> dict[str, str]:
                 library = ctypes.CDLL(str(path))
                 for function in (getattr(library, name) for name in NAMES if hasattr(library, name)):
                     function.restype = ctypes.c_char_p
-                    found[package] = function().decode()
-    return found
+                    names[package] = function().decode()
+    return names
 
 
 @cache
@@ -53,16 +53,16 @@ def description() -> str:
 def memory() -> float:
     """Memory that this process can take [bytes]: what the machine has available, and the limit of its control group;
     without /proc what the machine has, or infinite where that is not known either."""
-    least = math.inf
+    available = math.inf
     with contextlib.suppress(AttributeError, OSError, ValueError):
-        least = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+        available = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     with contextlib.suppress(OSError):
         table = dict(line.split(":") for line in Path("/proc/meminfo").read_text().splitlines())
-        least = 1024.0 * int(table["MemAvailable"].split()[0])
+        available = 1024.0 * int(table["MemAvailable"].split()[0])
     for path in (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes")):
         with contextlib.suppress(OSError, ValueError):  # "max" stands for none
-            least = min(least, float(path.read_text()))
-    return least
+            available = min(available, float(path.read_text()))
+    return available
 
 
 def cores() -> int:
@@ -71,6 +71,6 @@ def cores() -> int:
     quotas = Path("/sys/fs/cgroup/cpu.max"), Path("/sys/fs/cgroup/cpu/cpu.cfs_quota_us")
     for path, period in zip(quotas, (None, quotas[1].with_name("cpu.cfs_period_us")), strict=True):
         with contextlib.suppress(OSError, ValueError):  # "max" and -1 stand for none
-            quota, *of = (path.read_text() + (period.read_text() if period else "")).split()
-            count = min(count, math.ceil(float(quota) / float(of[0]))) if float(quota) > 0 else count
+            quota, *periods = (path.read_text() + (period.read_text() if period else "")).split()
+            count = min(count, math.ceil(float(quota) / float(periods[0]))) if float(quota) > 0 else count
     return count

@@ -27,8 +27,8 @@ def html_of(text: str, *tables: Iterable[Sequence[str]]) -> str:
         text: the line.
         tables: rows of cells, all texts.
     """
-    made = ["".join(f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows) for rows in tables]
-    return f"<p>{escape(text)}</p>" + "".join(f"<table>{rows}</table>" for rows in made)
+    html_tables = ["".join(f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows) for rows in tables]
+    return f"<p>{escape(text)}</p>" + "".join(f"<table>{rows}</table>" for rows in html_tables)
 
 
 def _cell(text: str) -> str:

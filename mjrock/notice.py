@@ -19,7 +19,7 @@ def notice(text: str, by: str = "mjrock") -> None:
 @contextlib.contextmanager
 def collect_warnings(first: Callable[[str], bool | None]) -> Iterator[None]:
     """Pass the text of every warning that would be shown to `first`, and show those for which it returns True."""
-    before = warnings.showwarning
+    show_before = warnings.showwarning
 
     def shown(
         message: Warning | str,
@@ -30,10 +30,10 @@ def collect_warnings(first: Callable[[str], bool | None]) -> Iterator[None]:
         line: str | None = None,
     ) -> None:
         if first(f"{category.__name__}: {message}"):
-            before(message, category, filename, lineno, file, line)
+            show_before(message, category, filename, lineno, file, line)
 
     warnings.showwarning = shown
     try:
         yield
     finally:
-        warnings.showwarning = before
+        warnings.showwarning = show_before

@@ -61,9 +61,9 @@ def joined(*tables: Rows) -> Rows:
     return joint.reshape(-1).view(tables[0].dtype)
 
 
-def chosen(table: Rows, which: Integers | Flags) -> Rows:
+def chosen(table: Rows, selection: Integers | Flags) -> Rows:
     """Some of the rows. numpy takes bytes faster than columns."""
-    return as_bytes(table)[which].reshape(-1).view(table.dtype)
+    return as_bytes(table)[selection].reshape(-1).view(table.dtype)
 
 
 def unsound(table: Rows, endless: tuple[str, ...] = ()) -> Integers:
@@ -80,9 +80,9 @@ def unsound(table: Rows, endless: tuple[str, ...] = ()) -> Integers:
 def _words(kind: np.dtype[np.void], names: tuple[str, ...]) -> tuple[Flags, Flags]:
     """Which words of a row are numbers that must be finite, and which may be infinite. The others are integers."""
     finite, endless = np.zeros((2, kind.itemsize // 8), dtype=bool)
-    for name, (of, at, *_) in (kind.fields or {}).items():
-        if of.base == np.float64:
-            (endless if name in names else finite)[at // 8 : (at + of.itemsize) // 8] = True
+    for name, (part_type, offset, *_) in (kind.fields or {}).items():
+        if part_type.base == np.float64:
+            (endless if name in names else finite)[offset // 8 : (offset + part_type.itemsize) // 8] = True
     return finite, endless
 
 

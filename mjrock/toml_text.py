@@ -27,14 +27,14 @@ def _lines(table: Mapping[str, Any], name: str) -> list[str]:
     """The lines of a table: its values first, then the tables in it."""
     lines, tables = [], []
     for key, value in table.items():
-        full = f"{name}.{toml_key(key)}" if name else toml_key(key)
+        full_name = f"{name}.{toml_key(key)}" if name else toml_key(key)
         if isinstance(value, Mapping):
-            below = _lines(value, full)
-            head = [f"[{full}]"] if not value or any(not one.startswith("[") for one in below[:1]) else []
+            below = _lines(value, full_name)
+            head = [f"[{full_name}]"] if not value or any(not line.startswith("[") for line in below[:1]) else []
             tables += ["", *head, *below] if head else below
-        elif isinstance(value, list | tuple) and value and all(isinstance(one, Mapping) for one in value):
-            for one in value:
-                tables += ["", f"[[{full}]]", *_lines(one, full)]
+        elif isinstance(value, list | tuple) and value and all(isinstance(item, Mapping) for item in value):
+            for item in value:
+                tables += ["", f"[[{full_name}]]", *_lines(item, full_name)]
         elif value is not None:
             lines.append(f"{toml_key(key)} = {toml_value(value)}")
     return lines + tables
@@ -65,7 +65,7 @@ def toml_value(value: object) -> str:
     if isinstance(value, Mapping):
         return (
             "{ "
-            + ", ".join(f"{toml_key(key)} = {toml_value(one)}" for key, one in value.items() if one is not None)
+            + ", ".join(f"{toml_key(key)} = {toml_value(item)}" for key, item in value.items() if item is not None)
             + " }"
         )
     raise TypeError(f"{value!r} of type {type(value).__name__} is nothing that a TOML file has")

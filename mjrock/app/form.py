@@ -110,22 +110,22 @@ class Plan:
         several = self._field("mechanisms", {"anyOf": [_mechanisms_of(parts["several"])]}, False)
         self.root = self._field("", parts["one"], True)
         for variant in self.root.variants:
-            fields = [one for one in self.tables[variant.id] if one.key != "language"]
+            fields = [field for field in self.tables[variant.id] if field.key != "language"]
             self.tables[variant.id] = [*fields, several]
 
     def _field(self, key: str, node: Part, needed: bool, place: str = "") -> Field:
         """The field of a key; `place` is the id of the table that it is in."""
-        kinds = list(self._kinds(node))
-        plain = [one for _, one in kinds if not _is_table(one)]
-        types = frozenset(name for one in plain for name in _types(one))
-        control, variants = self._nested(kinds, f"{place}.{key}")
+        alternatives = list(self._alternatives(node))
+        plain = [part for _, part in alternatives if not _is_table(part)]
+        types = frozenset(name for part in plain for name in _types(part))
+        control, variants = self._control_of_tables(alternatives, f"{place}.{key}")
         choices = self._choices(plain, types)
         if control == "pairs" and key == "project":
             choices = tuple((name, self.words(f"head_{name}")) for name in TITLE_BLOCK_KEYS)
         if not control or (control == "table" and types - {"boolean"}):
             control = self._control(key, plain, types, bool(choices))
-        number = next((one for one in plain if "unit" in one or "minimum" in one), {})
-        text = _without_range(str(node.get("description", "")), number)
+        number = next((part for part in plain if "unit" in part or "minimum" in part), {})
+        text = _text_without_range(str(node.get("description", "")), number)
         help = text if self.words.language == SCHEMA_LANGUAGE else self._help(key, place)
         return Field(
             key,
@@ -143,40 +143,40 @@ class Plan:
             types=types,
         )
 
-    def _nested(self, kinds: list[tuple[str, Part]], here: str) -> tuple[str, tuple[Variant, ...]]:
+    def _control_of_tables(self, alternatives: list[tuple[str, Part]], place: str) -> tuple[str, tuple[Variant, ...]]:
         """The control of a field with tables, and what these may be; an empty one of a field without any."""
         for key, control in (("items", "list"), ("", "table"), ("additionalProperties", "named")):
-            for name, one in kinds:
-                part = one.get(key) if key else one
-                alternatives = [*self._kinds(part, "" if key else name)] if isinstance(part, Mapping) else []
-                if any("properties" in alternative for _, alternative in alternatives):
-                    nested = alternatives if key else kinds
-                    return control, self._variants([pair for pair in nested if "properties" in pair[1]], here)
-        return ("pairs", ()) if any(_is_table(one) for _, one in kinds) else ("", ())
+            for name, node in alternatives:
+                part = node.get(key) if key else node
+                inner = [*self._alternatives(part, "" if key else name)] if isinstance(part, Mapping) else []
+                if any("properties" in alternative for _, alternative in inner):
+                    nested = inner if key else alternatives
+                    return control, self._variants([pair for pair in nested if "properties" in pair[1]], place)
+        return ("pairs", ()) if any(_is_table(node) for _, node in alternatives) else ("", ())
 
-    def _kinds(self, node: Part, name: str = "") -> Iterator[tuple[str, Part]]:
+    def _alternatives(self, node: Part, name: str = "") -> Iterator[tuple[str, Part]]:
         """The alternatives of a part of the schema, with the names of those that are definitions."""
         if "$ref" in node:
             name = str(node["$ref"]).rpartition("/")[2]
-            yield from self._kinds(self.schema["$defs"][name], name)
+            yield from self._alternatives(self.schema["$defs"][name], name)
         elif alternatives := node.get("anyOf", node.get("oneOf")):
             for alternative in alternatives:
-                yield from self._kinds(alternative)
+                yield from self._alternatives(alternative)
         elif node:
             yield name, node
 
-    def _variants(self, tables: list[tuple[str, Part]], here: str) -> tuple[Variant, ...]:
+    def _variants(self, tables: list[tuple[str, Part]], place: str) -> tuple[Variant, ...]:
         """What a table may be."""
         variants = []
         kinds = {table["properties"].get("kind", {}).get("const") for _, table in tables}
-        chosen = VARIANT_KEYS if len(kinds) > 1 else VARIANT_KEYS[1:]
+        naming_keys = VARIANT_KEYS if len(kinds) > 1 else VARIANT_KEYS[1:]
         for i, (name, table) in enumerate(tables):
             properties = table["properties"]
-            consts = {key: properties[key] for key in chosen if "const" in properties.get(key, {})}
-            names = {key: str(given["const"]) for key, given in consts.items()}
-            usual = all("default" in given for given in consts.values())
-            id = name if name and table is self.schema["$defs"].get(name) else f"{here}/{i}"
-            section = ".".join((here.rpartition(".")[2], *names.values()))
+            consts = {key: properties[key] for key in naming_keys if "const" in properties.get(key, {})}
+            names = {key: str(node["const"]) for key, node in consts.items()}
+            usual = all("default" in node for node in consts.values())
+            id = name if name and table is self.schema["$defs"].get(name) else f"{place}/{i}"
+            section = ".".join((place.rpartition(".")[2], *names.values()))
             self._owners[id] = str(table.get("title") or names.get("kind") or section)
             self._register(id, table)
             variants.append(Variant(id, self._variant_label(str(table.get("title", "")), names), names, usual))
@@ -192,11 +192,11 @@ class Plan:
             if key not in VARIANT_KEYS or "const" not in node:
                 self.tables[id].append(self._field(key, node, key in needed, id))
 
-    def _control(self, key: str, plain: list[Part], types: frozenset[str], chosen: bool) -> str:
+    def _control(self, key: str, plain: list[Part], types: frozenset[str], has_choices: bool) -> str:
         """How a value without tables is typed."""
-        if any(one.get("x-path") or one.get("items", {}).get("x-path") for one in plain):
+        if any(part.get("x-path") or part.get("items", {}).get("x-path") for part in plain):
             return "folder" if key == "folder" else "file"
-        if chosen:
+        if has_choices:
             return "truth" if types == {"boolean"} else "choice"
         if types & {"number", "integer"}:
             return "number"
@@ -204,9 +204,9 @@ class Plan:
 
     def _choices(self, plain: list[Part], types: frozenset[str]) -> tuple[tuple[str, str], ...]:
         """The values that can be chosen, with their labels; none where others can be typed."""
-        texts = [str(value) for one in plain for value in one.get("enum", ())]
-        only = [one["const"] for one in plain if "const" in one]
-        known = [text for text, value in TRUTHS.items() if value in only or not only] if "boolean" in types else []
+        texts = [str(value) for part in plain for value in part.get("enum", ())]
+        consts = [part["const"] for part in plain if "const" in part]
+        known = [text for text, value in TRUTHS.items() if value in consts or not consts] if "boolean" in types else []
         truths = [(text, self.words(f"form_{text}")) for text in known]
         if not texts and types - {"boolean"}:
             return ()
@@ -257,42 +257,42 @@ class Plan:
 
     def field(self, fields: list[Field], key: str) -> Field | None:
         """The field of a key; None where there is none."""
-        return next((one for one in fields if one.key == key), None)
+        return next((field for field in fields if field.key == key), None)
 
     def variant(self, field: Field, values: Mapping[str, object]) -> Variant:
         """The variant of a table that its `kind` and `make` name; the nearest where none fits."""
 
-        def fits(one: Variant, key: str) -> bool:
-            variant_name = one.names.get(key)
-            return values[key] == variant_name if key in values else variant_name is None or one.usual
+        def fits(option: Variant, key: str) -> bool:
+            variant_name = option.names.get(key)
+            return values[key] == variant_name if key in values else variant_name is None or option.usual
 
-        used = {key for one in field.variants for key in one.names}
-        fitting = [one for one in field.variants if all(fits(one, key) for key in used)]
-        return [*fitting, *(one for one in field.variants if fits(one, VARIANT_KEYS[0])), *field.variants][0]
+        used = {key for option in field.variants for key in option.names}
+        fitting = [option for option in field.variants if all(fits(option, key) for key in used)]
+        return [*fitting, *(option for option in field.variants if fits(option, VARIANT_KEYS[0])), *field.variants][0]
 
     def tables_of(self, state: Document) -> Document:
         """The tables of the file that the input of the form stands for."""
-        return self._read(self.root, state)
+        return self._table_of(self.root, state)
 
-    def _read(self, field: Field, state: Document) -> Document:
+    def _table_of(self, field: Field, state: Document) -> Document:
         fields = self.tables[self.variant(field, state).id]
-        fields_by_key = {key: self.field(fields, key) for key, one in state.items() if one != ""}
+        fields_by_key = {key: self.field(fields, key) for key, value in state.items() if value != ""}
         return {key: self._value(field, state[key]) for key, field in fields_by_key.items()}
 
     def _value(self, field: Field | None, value: object) -> object:
         if isinstance(value, Mapping):
             if field is None or field.control in ("named", "pairs"):
-                return {name: self._item(field, one) for name, one in value.items()}
+                return {name: self._item(field, item) for name, item in value.items()}
             return self._item(field, value)
         if isinstance(value, list):
-            return [self._item(field, one) for one in value]
+            return [self._item(field, item) for item in value]
         return typed(value, ANY_TYPE if field is None else field.types) if isinstance(value, str) else value
 
     def _item(self, field: Field | None, value: object) -> object:
         """A table of a field, or an item of a list, whose texts stay as they are."""
         if field is None:
             return self._value(None, value)
-        return self._read(field, value) if isinstance(value, Mapping) and field.variants else value
+        return self._table_of(field, value) if isinstance(value, Mapping) and field.variants else value
 
     def files_in(self, tables: Document, field: Field | None = None) -> Iterator[tuple[Place, object]]:
         """The places of all files that tables of the file name, and what they name."""
@@ -320,8 +320,8 @@ class Plan:
         """The plan as the page takes it."""
 
         def plain(field: Field) -> dict[str, object]:
-            values = field._asdict() | {"variants": [one._asdict() for one in field.variants]}
-            return {key: one for key, one in values.items() if key != "types" and one not in ("", (), [], False)}
+            values = field._asdict() | {"variants": [variant._asdict() for variant in field.variants]}
+            return {key: value for key, value in values.items() if key != "types" and value not in ("", (), [], False)}
 
         tables = {id: [plain(field) for field in fields] for id, fields in self.tables.items()}
         return {"tables": tables, "root": plain(self.root)}
@@ -330,13 +330,13 @@ class Plan:
 def _mechanisms_of(several: Part) -> Part:
     """The table of mechanisms by name, from that of a file with several."""
     parts = several.get("anyOf") or several["oneOf"]
-    found: Part = parts[0]["properties"]["mechanisms"]
-    return found
+    table: Part = parts[0]["properties"]["mechanisms"]
+    return table
 
 
 def _places_of_items(value: object, place: Place) -> list[tuple[Place, object]]:
     """A value with its place, or each item of a list with its own."""
-    return [((*place, i), one) for i, one in enumerate(value)] if isinstance(value, list) else [(place, value)]
+    return [((*place, i), item) for i, item in enumerate(value)] if isinstance(value, list) else [(place, value)]
 
 
 def _is_table(node: Part) -> bool:
@@ -356,13 +356,13 @@ def _unit(node: Part) -> str:
     return unit.replace("m3", "m\u00b3").replace("m2", "m\u00b2").replace("s2", "s\u00b2").replace(" ", "\u00b7")
 
 
-def _without_range(text: str, node: Part) -> str:
+def _text_without_range(text: str, node: Part) -> str:
     """A description without the range that the schema has too."""
 
-    def repeats(found: re.Match[str]) -> bool:
-        return float(found[1]) == node.get("minimum") and node.get("maximum", float(found[2])) == float(found[2])
+    def repeats(match: re.Match[str]) -> bool:
+        return float(match[1]) == node.get("minimum") and node.get("maximum", float(match[2])) == float(match[2])
 
-    return RANGE_TEXT.sub(lambda found: (", " if found["and"] else "") if repeats(found) else found[0], text)
+    return RANGE_TEXT.sub(lambda match: (", " if match["and"] else "") if repeats(match) else match[0], text)
 
 
 def _is_number(value: object) -> bool:
@@ -377,9 +377,9 @@ def typed(text: str, types: frozenset[str]) -> object:
     text = text.strip()
     if types & {"number", "integer"}:
         text = NUMBER_WITH_COMMA.sub(r"\1.\2", text)
-        for kind in (int, float):
+        for number_type in (int, float):
             try:
-                return kind(text)
+                return number_type(text)
             except ValueError:
                 continue
     if "boolean" in types and text in TRUTHS:
@@ -399,21 +399,21 @@ def text_of(value: object) -> str:
     if isinstance(value, float):
         return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     if isinstance(value, list):
-        return f"[{', '.join(json.dumps(one) if isinstance(one, str) else text_of(one) for one in value)}]"
+        return f"[{', '.join(json.dumps(item) if isinstance(item, str) else text_of(item) for item in value)}]"
     return str(value)
 
 
 def state_of(tables: Document) -> Document:
     """The input of the form that stands for tables of a file: its values as texts."""
 
-    def one(value: object) -> object:
+    def value_state(value: object) -> object:
         if isinstance(value, Mapping):
             return state_of(value)
-        if isinstance(value, list) and value and all(isinstance(each, Mapping) for each in value):
-            return [state_of(each) for each in value]
+        if isinstance(value, list) and value and all(isinstance(table, Mapping) for table in value):
+            return [state_of(table) for table in value]
         return text_of(value)
 
-    return {key: one(value) for key, value in tables.items()}
+    return {key: value_state(value) for key, value in tables.items()}
 
 
 def texts_of(words: Words) -> dict[str, str]:

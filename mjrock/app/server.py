@@ -106,9 +106,9 @@ class FormServer(ThreadingHTTPServer):
     def take_ticket(self, ticket: str) -> bool:
         """Whether a ticket is good; it is so once."""
         with self._lock:
-            good = ticket in self._tickets
+            is_valid = ticket in self._tickets
             self._tickets.discard(ticket)
-            return good
+            return is_valid
 
     def handle_error(self, request: object, client_address: object) -> None:
         """Leave out errors of connections that the other side has ended."""
@@ -125,7 +125,7 @@ class Handler(BaseHTTPRequestHandler):
     timeout = 30
     server_version, sys_version = "mjrock", ""
 
-    def log_message(self, format: str, *given: object) -> None:
+    def log_message(self, format: str, *arguments: object) -> None:
         """Write no line for each request."""
 
     def do_GET(self) -> None:

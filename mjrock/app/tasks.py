@@ -80,7 +80,7 @@ def form(request: Payload, send: Send) -> None:
 def templates_of() -> dict[str, dict[str, Any]]:
     """The tables of each template by its name, with an empty title block."""
     left_out = "title", "project"
-    return {name: {key: one for key, one in own.items() if key not in left_out} for name, own in seeds().items()}
+    return {name: {key: value for key, value in seed.items() if key not in left_out} for name, seed in seeds().items()}
 
 
 def open_file(request: Payload, send: Send) -> None:
@@ -103,7 +103,10 @@ def check(request: Payload, send: Send) -> None:
     with Folder(request) as folder, faults_sent(send, words):
         assessment = folder.assessment()
         with faults_sent(send, words):
-            checks = {name or kind_named(one.problem, words): one for name, one in assessment.mechanisms.items()}
+            checks = {
+                name or kind_named(mechanism.problem, words): mechanism
+                for name, mechanism in assessment.mechanisms.items()
+            }
             mechanisms = required_checks(dict(zip(checks, assessment.check().values(), strict=True)), "")
             send(verdict(mechanisms, folder.notes(words), words))
         for part in sketch_parts(assessment, words):
@@ -186,7 +189,7 @@ def run(request: Payload, send: Send) -> None:
                 sender.before += 1
         notes = folder.notes(words)
         parts = dynamic_answers(assessment, responses, words)
-        parts += [part for name, of_one in responses.items() for part in run_parts(name, of_one, words)]
+        parts += [part for name, of_mechanism in responses.items() for part in run_parts(name, of_mechanism, words)]
         send({"answers": "".join([*parts, *notes])})
         film = view(farthest_response(list(chain(*responses.values()))), folder.path / "film.html")
         send({"keep": {"film": film.read_bytes(), "responses": pickle.dumps(responses)}})
@@ -198,7 +201,7 @@ def dynamic_answers(assessment: Assessment, responses: Mapping[str, Sequence[Res
         checks = assessment.dynamic_check(responses)
     except AssessmentError:
         return []
-    named = {name or kind_named(assessment.mechanisms[name].problem, words): one for name, one in checks.items()}
+    named = {name or kind_named(assessment.mechanisms[name].problem, words): check for name, check in checks.items()}
     return answer_parts(required_checks(named, ""), [], words)
 
 
@@ -212,7 +215,7 @@ def run_parts(name: str, responses: Sequence[Response], words: Words) -> list[Ma
 
 def farthest_response(responses: Sequence[Response]) -> Response:
     """The response with the largest displacement."""
-    return max(responses, key=lambda one: content_of(one.case).largest_displacement(one))
+    return max(responses, key=lambda response: content_of(response.case).largest_displacement(response))
 
 
 def report(request: Payload, send: Send) -> None:
@@ -263,9 +266,18 @@ def faults_sent(send: Send, words: Words, *kinds: type[Exception]) -> Iterator[N
     try:
         yield
     except AssessmentError as error:
-        faults = [one._replace(message=words.message(one.message)) for one in error.faults]
-        lines = [words("form_line", line=one.line, message=one.message) if one.line else one.message for one in faults]
-        send({"faults": [{"place": list(one.place), "message": line} for one, line in zip(faults, lines, strict=True)]})
+        faults = [fault._replace(message=words.message(fault.message)) for fault in error.faults]
+        lines = [
+            words("form_line", line=fault.line, message=fault.message) if fault.line else fault.message
+            for fault in faults
+        ]
+        send(
+            {
+                "faults": [
+                    {"place": list(fault.place), "message": line} for fault, line in zip(faults, lines, strict=True)
+                ]
+            }
+        )
     except kinds as error:
         send({"faults": [{"place": [], "message": words.message(reason(error))}]})
 
@@ -297,21 +309,21 @@ class Folder:
                 raise ValueError(f"files[{name!r}] is no base64") from None
 
     def __enter__(self) -> Folder:
-        self._left = contextlib.ExitStack()
-        caught = self._left.enter_context(warnings.catch_warnings(record=True))
+        self._contexts = contextlib.ExitStack()
+        caught = self._contexts.enter_context(warnings.catch_warnings(record=True))
         self._caught = [] if caught is None else caught
         warnings.simplefilter("always")
-        self.path = Path(self._left.enter_context(TemporaryDirectory()))
+        self.path = Path(self._contexts.enter_context(TemporaryDirectory()))
         for name, content in self.files.items():
             (self.path / name).write_bytes(content)
         return self
 
     def __exit__(self, *error: object) -> None:
-        self._left.close()
+        self._contexts.close()
 
     def notes(self, words: Words) -> list[Markup]:
         """What has been warned of so far, each once."""
-        texts = [words.message(reason(one.message)) for one in self._caught if isinstance(one.message, Warning)]
+        texts = [words.message(reason(note.message)) for note in self._caught if isinstance(note.message, Warning)]
         return [element("p", text, kind="note") for text in dict.fromkeys(texts)]
 
     def assessment(self) -> Assessment:
@@ -321,9 +333,9 @@ class Folder:
             AssessmentError: with all that is wrong, and for a path that is not that of a file of the request.
         """
         tables = tables_in(self.request)
-        lost = "{place} = {value} is no file that is uploaded; choose the file again"
+        template = "{place} = {value} is no file that is uploaded; choose the file again"
         faults = [
-            Fault(place, Message(lost, place=spelt_place(place), value=brief(name)))
+            Fault(place, Message(template, place=spelt_place(place), value=brief(name)))
             for place, name in plan_of("en").files_in(tables)
             if name not in (*self.files, UPLOAD_FOLDER)
         ]

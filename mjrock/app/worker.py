@@ -148,15 +148,15 @@ class Team:
         Raises:
             BusyError: where all workers are at work.
         """
-        worker = self._take()
+        worker = self._take_worker()
         is_complete = False
         try:
             yield from worker.parts(name, request, is_disconnected, limit)
             is_complete = True
         finally:
-            self._leave(worker, is_complete)
+            self._return_worker(worker, is_complete)
 
-    def _take(self) -> Worker:
+    def _take_worker(self) -> Worker:
         with self._lock:
             if self._closed or len(self._busy) >= MOST_BUSY:
                 raise BusyError
@@ -170,7 +170,7 @@ class Team:
             self._busy.append(worker)
             return worker
 
-    def _leave(self, worker: Worker, is_complete: bool) -> None:
+    def _return_worker(self, worker: Worker, is_complete: bool) -> None:
         with self._lock:
             if worker in self._busy:  # and is not closed with the others
                 self._busy.remove(worker)

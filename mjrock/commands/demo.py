@@ -47,9 +47,9 @@ def comparison_figure(case: Case, responses: Sequence[Response], title: str) -> 
     lower.set_xlim(0, min(theory.t[-1], 1.3 * theory.t[moving_samples[-1]]))
     for impact in theory.impacts:
         if impact.energy_before > LEAST_ENERGY_STEP * theory.energy[0]:
-            at = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
+            xy = impact.t, 0.5e-3 * (impact.energy_before + impact.energy_after)
             text = f"$|e|$ = {abs(impact.restitution):.2f}"
-            lower.annotate(text, at, (6, 0), textcoords="offset points", va="center", fontsize=8, color="0.2", zorder=6)
+            lower.annotate(text, xy, (6, 0), textcoords="offset points", va="center", fontsize=8, color="0.2", zorder=6)
     inset = upper.inset_axes((0.72, 0.16, 0.28, 0.82))
     section(inset, case)
     inset.axis("off")

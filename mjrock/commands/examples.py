@@ -114,7 +114,7 @@ def answer(argv: Sequence[str]) -> Answer:
     add_output(parser, "folder of the pictures and the page, or of the script", "the current one")
     args = parser.parse_args(argv)
     if args.name is None:
-        lines = aligned([(one.path.stem, one.title) for one in examples()], "<")
+        lines = aligned([(example.path.stem, example.title) for example in examples()], "<")
         return Answer("\n".join([*lines, "", "mjrock examples NAME runs one."]))
     example, folder = example_named(args.name), args.output or Path()
     if args.copy:

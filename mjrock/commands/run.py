@@ -53,8 +53,8 @@ def table_of(runs: Sequence[Analysis], rows: Sequence[Row], words: Words) -> str
     """How each run ended, and its largest rotation."""
     cells = [tuple(words(key) for key in ("motion_name", "run_outcome", f"column_{runs[0].PEAK}"))]
     for run, row in zip(runs, rows, strict=True):
-        ended = "blocks_fell" if row.get("fallen") else f"outcome_{row['outcome'].replace(' ', '_')}"
-        cells.append((motion_name(run, words), words(ended), words.number(row[run.PEAK], BY_HAND)))
+        outcome_key = "blocks_fell" if row.get("fallen") else f"outcome_{row['outcome'].replace(' ', '_')}"
+        cells.append((motion_name(run, words), words(outcome_key), words.number(row[run.PEAK], BY_HAND)))
     return "\n".join(ruled(cells, "<<>"))
 
 

@@ -49,7 +49,7 @@ print(first)
 """
 UNTIL_STORED = """
 from mjrock import background_compilation as behind
-while "numba" not in sys.modules and behind._here.compiler is not None and time.perf_counter() - begun < 300:
+while "numba" not in sys.modules and behind._process.compiler is not None and time.perf_counter() - begun < 300:
     time.sleep(0.2)
     behind.news()
 print(time.perf_counter() - begun)

@@ -225,13 +225,13 @@ def test_where_nothing_can_be_stored_short_runs_are_plain_python(monkeypatch):
 
     monkeypatch.setattr(FunctionCache._impl_class, "_locator_classes", [])
     monkeypatch.setenv("MJROCK_INTERPRET", "1")
-    monkeypatch.setattr(background_compilation._here, "taken", 0.0)
-    monkeypatch.setattr(background_compilation._here, "started", background_compilation.MOST)
+    monkeypatch.setattr(background_compilation._process, "taken", 0.0)
+    monkeypatch.setattr(background_compilation._process, "started", background_compilation.MOST)
     probe, room = compiled.compiled(PROBE), np.ones(2)
     with background_compilation.first_answer(print):
         probe(room)
         assert not probe.signatures
-        monkeypatch.setattr(background_compilation._here, "taken", background_compilation.COMPILING)
+        monkeypatch.setattr(background_compilation._process, "taken", background_compilation.COMPILING)
         probe(room)
     assert len(probe.signatures) == 1
     assert list(room) == [4.0, 4.0]

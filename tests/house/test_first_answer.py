@@ -31,7 +31,7 @@ wall = mr.Block.from_size(0.6, 4.2)
 contacts = mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05)
 case = mr.Case(wall, 0.3 * wall.alpha, 0.3, side_stop=False)
 answer = mr.simulate(case, contacts)
-behind = background_compilation._here.compiler
+behind = background_compilation._process.compiler
 print(answer.theta[-1].hex(), "numba" in sys.modules, behind and behind.process.pid, flush=True)
 """
 
@@ -205,7 +205,7 @@ def test_later_calls_take_what_another_process_has_stored(fresh):
 first, until = answer.theta, time.monotonic() + 300
 while "numba" not in sys.modules and time.monotonic() < until:
     time.sleep(0.5)
-    background_compilation._here.taken = 0.0  # as if plain Python took no time
+    background_compilation._process.taken = 0.0  # as if plain Python took no time
     answer = mr.solve_analytical(case, e)
 assert (answer.theta == first).all()
 print(bool(rocking_loop.signatures), sum(rocking_loop.stats.cache_hits.values()))
@@ -257,9 +257,9 @@ def test_switched_off_it_compiles(fresh, monkeypatch):
     with background_compilation.first_answer(print):
         assert background_compilation.allowed(at_once=False)
         assert not background_compilation.allowed(at_once=True)
-        monkeypatch.setattr(background_compilation._here, "taken", background_compilation.COMPILING)
+        monkeypatch.setattr(background_compilation._process, "taken", background_compilation.COMPILING)
         assert not background_compilation.allowed(at_once=False)
-    monkeypatch.setattr(background_compilation._here, "taken", 0.0)
+    monkeypatch.setattr(background_compilation._process, "taken", 0.0)
     assert not background_compilation.allowed(at_once=False)
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     with background_compilation.first_answer(print):
@@ -268,11 +268,11 @@ def test_switched_off_it_compiles(fresh, monkeypatch):
 
 def test_a_long_run_compiles_at_once(monkeypatch):
     monkeypatch.setenv("MJROCK_INTERPRET", "1")
-    monkeypatch.setattr(background_compilation._here, "taken", 0.0)
+    monkeypatch.setattr(background_compilation._process, "taken", 0.0)
     with background_compilation.first_answer(print):
         background_compilation.expect(0.5 * background_compilation.COMPILING)
         assert background_compilation.allowed(at_once=False)
-        monkeypatch.setattr(background_compilation._here, "taken", 0.6 * background_compilation.COMPILING)
+        monkeypatch.setattr(background_compilation._process, "taken", 0.6 * background_compilation.COMPILING)
         background_compilation.expect(0.5 * background_compilation.COMPILING)
         assert not background_compilation.allowed(at_once=False)
 
@@ -281,8 +281,8 @@ def test_a_long_run_compiles_at_once(monkeypatch):
 def patient(monkeypatch):
     """First answers in this process, by loops that nobody compiles behind it."""
     monkeypatch.setenv("MJROCK_INTERPRET", "1")
-    monkeypatch.setattr(background_compilation._here, "taken", 0.0)
-    monkeypatch.setattr(background_compilation._here, "started", background_compilation.MOST)
+    monkeypatch.setattr(background_compilation._process, "taken", 0.0)
+    monkeypatch.setattr(background_compilation._process, "started", background_compilation.MOST)
 
 
 def double(values):
@@ -296,9 +296,9 @@ def test_the_time_of_plain_python_counts(patient, monkeypatch):
     monkeypatch.setattr(compiled, "may_be_stored", lambda function: False)
     with background_compilation.first_answer(print):
         loop(room)
-        assert 0 < background_compilation._here.taken < 1
+        assert 0 < background_compilation._process.taken < 1
         assert "dispatcher" not in vars(loop)
-        monkeypatch.setattr(background_compilation._here, "taken", background_compilation.COMPILING)
+        monkeypatch.setattr(background_compilation._process, "taken", background_compilation.COMPILING)
         loop(room)
     assert len(loop.signatures) == 1
     assert list(room) == [4.0, 8.0]
