@@ -174,8 +174,8 @@ def test_what_a_case_has_no_place_for():
     for given, complaint in (
         ({"direction": 2}, "direction = 2 is not a direction"),
         ({"direction": None}, "direction = None needs loads"),
-        ({"angle": 0.1}, "angle is for masonry"),
-        ({"effects": mr.Load(1e3, 1.0)}, "effects is for masonry"),
+        ({"angle": 0.1}, "angle cannot be given for a Case"),
+        ({"effects": mr.Load(1e3, 1.0)}, "effects cannot be given for a Case"),
         ({"loads": (mr.Thrust(3.0, 1e3),)}, r"loads\[0\], height = 3 m is outside"),
         ({"loads": (mr.Tie(1.0, 1e6),)}, r"loads\[0\] = .* is not a Thrust or Load"),
         ({"loads": {"wall": (1, 2)}}, "loads = .* is not Thrust, Load or a sequence of them"),
