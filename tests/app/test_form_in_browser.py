@@ -121,8 +121,8 @@ def test_a_gable_with_a_tie_in_italian_ends_in_a_pdf(address, tmp_path):
     with form(address, language="it") as page:
         assert page.run("document.documentElement.lang") == "it"
         begun(page, "gable")
-        said = page.run("document.getElementById('at/wall/thickness/help').innerText")
-        assert said == "da 0,002 a 20 m; spessore 2b alla base"
+        message = page.run("document.getElementById('at/wall/thickness/help').innerText")
+        assert message == "da 0,002 a 20 m; spessore 2b alla base"
         before = page.run("document.getElementById('to-results').textContent")
         count = page.run("document.querySelectorAll('#form fieldset').length")
         page.click("document.getElementById('at/effects')")
@@ -153,19 +153,19 @@ def test_a_gable_with_a_tie_in_italian_ends_in_a_pdf(address, tmp_path):
     if shutil.which("pdftotext"):
         path = tmp_path / "report.pdf"
         path.write_bytes(content)
-        told = subprocess.run(["pdftotext", path, "-"], capture_output=True, text=True, check=True).stdout
-        assert "Esito" in told
-        assert "catena" in told
+        printed = subprocess.run(["pdftotext", path, "-"], capture_output=True, text=True, check=True).stdout
+        assert "Esito" in printed
+        assert "catena" in printed
 
 
 def test_what_is_wrong_is_said_at_its_field_and_in_the_list(address):
     with form(address) as page:
         begun(page, "gable")
         checked(page, lambda: page.fill("at/wall/thickness", "-3"))
-        said = page.run(
+        message = page.run(
             "document.getElementById('at/wall/thickness').closest('.field').querySelector('.fault').innerText"
         )
-        assert "0.002 to 20 m" in said
+        assert "0.002 to 20 m" in message
         assert page.run("document.getElementById('at/wall/thickness').getAttribute('aria-invalid')") == "true"
         page.click("document.querySelector('#verdict a')")
         assert page.run("document.activeElement.id") == "at/wall/thickness"
@@ -177,8 +177,11 @@ def test_a_refusal_is_italian_in_the_italian_form(address):
     with form(address, language="it") as page:
         begun(page, "gable")
         checked(page, lambda: page.fill("at/wall/thickness", "-3"))
-        said = "wall.thickness = -3 m è fuori dall'intervallo valido da 0,002 a 20 m"
-        assert page.run("[...document.querySelectorAll('.fault, #verdict a')].map(e => e.innerText)") == [said, said]
+        message = "wall.thickness = -3 m è fuori dall'intervallo valido da 0,002 a 20 m"
+        assert page.run("[...document.querySelectorAll('.fault, #verdict a')].map(e => e.innerText)") == [
+            message,
+            message,
+        ]
         checked(page, lambda: page.fill("at/wall/thickness", "30 kg"))
         assert "ha l'unità kg, mentre è richiesto un numero in m" in page.run(
             "document.querySelector('.fault').innerText"

@@ -98,7 +98,7 @@ def deep(levels):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "complaint"),
     [
         ("", "has no mechanism|has no wall"),
         ("\x00" * 100, ":1: .* is not TOML|is not TOML"),
@@ -116,10 +116,10 @@ def deep(levels):
         ("[[wall]]\nthickness = 1", ":1: wall is a list"),
     ],
 )  # fmt: skip
-def test_odd_files_are_refused(text, said, tmp_path):
+def test_odd_files_are_refused(text, complaint, tmp_path):
     path = tmp_path / "odd.toml"
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(mr.AssessmentError, match=said):
+    with pytest.raises(mr.AssessmentError, match=complaint):
         mr.from_toml(path)
 
 

@@ -240,19 +240,19 @@ WRONG = (
 )
 
 
-@pytest.mark.parametrize(("right", "wrong", "said"), WRONG, ids=[wrong for _, wrong, _ in WRONG])
-def test_an_error_names_the_line_of_its_key(right, wrong, said):
+@pytest.mark.parametrize(("right", "wrong", "complaint"), WRONG, ids=[wrong for _, wrong, _ in WRONG])
+def test_an_error_names_the_line_of_its_key(right, wrong, complaint):
     text = f"{SITE}{WALL}{EFFECTS}"
     assert text.count(right) == 1 or right == "height = 7.5"
     line = text[: text.index(right)].count("\n") + 1
     text = text.replace(right, wrong, 1)
-    if said is None:
+    if complaint is None:
         mr.from_toml(text=text)
         return
     with pytest.raises(mr.AssessmentError) as error:
         mr.from_toml(text=text)
     fault = error.value.faults[0]
-    assert said in fault.message
+    assert complaint in fault.message
     assert fault.line == line
 
 
@@ -310,14 +310,14 @@ def test_a_class_of_a_user_is_in_the_file_the_day_it_exists():
     text += "[[effects]]\nkind = 'Buttress'\nheight = '400 cm'"
     effects = mr.from_toml(text=text).mechanisms[""].problem.effects
     assert effects == (Brace(3.0, 1e7, number=3), mr.Tie(4.0, 1e7), mr.Tie(2.0, 1.9e7))
-    for wrong, said in (
+    for wrong, complaint in (
         (text.replace("number = 3", "number = 12"), r"effects\[0\].number = 12 is outside the valid range 1 to 9"),
         (
             text.replace("400 cm", "950 cm"),
             r"effects\[1\].height = '950 cm' = 9.5 m is outside the valid range 0 to 9 m",
         ),
     ):
-        with pytest.raises(mr.AssessmentError, match=said):
+        with pytest.raises(mr.AssessmentError, match=complaint):
             mr.from_toml(text=wrong)
     number = mr.toml_schema()["$defs"]["Brace"]["properties"]["number"]
     assert (number["type"], number["minimum"], number["maximum"]) == ("integer", 1, 9)

@@ -165,7 +165,7 @@ WALL = mr.Case(FACADE)
 
 
 @pytest.mark.parametrize(
-    ("mechanism", "said"),
+    ("mechanism", "message"),
     [
         (
             Mechanism(mr.MasonryCase(mr.Masonry(BLOCKS, friction=lambda joint: 0.5))),
@@ -201,6 +201,6 @@ WALL = mr.Case(FACADE)
         ),
     ],
 )
-def test_what_a_file_has_no_words_for_is_refused_by_name(mechanism, said):
-    with pytest.raises(mr.AssessmentError, match=said):
+def test_what_a_file_has_no_words_for_is_refused_by_name(mechanism, message):
+    with pytest.raises(mr.AssessmentError, match=message):
         Assessment({"": mechanism}).to_toml()

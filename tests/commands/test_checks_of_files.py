@@ -69,8 +69,8 @@ def test_a_template_is_checked_as_it_is_and_fits_into_100_columns(name, here, ca
     assert max(map(len, text.splitlines())) <= TEMPLATE_WIDTH
     checks = checks_of(text)
     holds = all(verdict.holds for check in checks.values() for verdict in check.verdicts)
-    said = printed(capsys, "check", "wall.toml", status=Status.HOLDS if holds else Status.FAILS)
-    assert said.count("C8.7.1.2.1.") == sum(len(check.verdicts) for check in checks.values())
+    message = printed(capsys, "check", "wall.toml", status=Status.HOLDS if holds else Status.FAILS)
+    assert message.count("C8.7.1.2.1.") == sum(len(check.verdicts) for check in checks.values())
 
 
 @pytest.mark.parametrize("name", among(TEMPLATES, *WALLS))
@@ -100,10 +100,10 @@ def test_the_exit_status_is_the_verdict_and_the_worst_mechanism_stands_first(her
     (here / "both.toml").write_text(site + "".join(both))
     printed(capsys, "check", "thick.toml")
     printed(capsys, "check", "thin.toml", status=Status.FAILS)
-    said = printed(capsys, "check", "both.toml", "thick.toml", status=Status.FAILS)
-    assert said.index("thin ") < said.index("thick ")
-    assert "thin governs: no condition holds." in said
-    assert said.count(".toml\n") == 2
+    message = printed(capsys, "check", "both.toml", "thick.toml", status=Status.FAILS)
+    assert message.index("thin ") < message.index("thick ")
+    assert "thin governs: no condition holds." in message
+    assert message.count(".toml\n") == 2
 
 
 def test_a_table_is_in_the_language_of_the_file_or_of_the_option(here, capsys):
@@ -130,9 +130,9 @@ def test_what_is_wrong_with_a_file_keeps_no_other_from_being_checked(here, capsy
     (here / "wrong.toml").write_text(THICK.replace("50 cm", "50 kg"))
     (here / "right.toml").write_text(THICK)
     assert main(["check", "wrong.toml", "none.toml", "right.toml"]) == Status.ERROR
-    said = capsys.readouterr()
-    assert said.out.startswith("right.toml\n")
-    wrong, absent = said.err.splitlines()
+    message = capsys.readouterr()
+    assert message.out.startswith("right.toml\n")
+    wrong, absent = message.err.splitlines()
     assert wrong.startswith("error: wrong.toml:4: wall.thickness = '50 kg' ")
     assert absent == "error: none.toml: No such file or directory"
 

@@ -86,7 +86,7 @@ def failing(error):
 
 
 @pytest.mark.parametrize(
-    ("error", "status", "said"),
+    ("error", "status", "message"),
     [
         (ValueError("height = 7"), 2, "error: height = 7\n"),
         (OSError(28, "No space left on device", "wall.csv"), 2, "error: wall.csv: No space left on device\n"),
@@ -96,11 +96,11 @@ def failing(error):
         (KeyboardInterrupt("3 of 7 runs are kept"), 130, "mjrock: interrupted: 3 of 7 runs are kept\n"),
     ],
 )
-def test_the_exit_status_says_how_it_ended(error, status, said, probe, capsys):
+def test_the_exit_status_says_how_it_ended(error, status, message, probe, capsys):
     probe(failing(error))
     assert main(["status"]) == status
     printed = capsys.readouterr()
-    assert (printed.out, printed.err) == ("", said)
+    assert (printed.out, printed.err) == ("", message)
 
 
 @pytest.mark.parametrize("status", [Status.HOLDS, Status.FAILS])
@@ -154,8 +154,8 @@ def test_an_example_has_a_number_and_a_name(name):
 
 
 def test_an_example_that_is_not_there_is_refused_with_those_that_are(capsys):
-    said = refused(capsys, "examples", "bridge")
-    assert said.startswith("error: there is no example 'bridge'; give a number from 1 to 21 or one of 01_release, ")
+    message = refused(capsys, "examples", "bridge")
+    assert message.startswith("error: there is no example 'bridge'; give a number from 1 to 21 or one of 01_release, ")
 
 
 SCRIPT = '''"""

@@ -67,7 +67,7 @@ def refused(capsys, *arguments):
 @pytest.mark.filterwarnings("ignore::mjrock.Implausible")
 def test_a_run_writes_a_table_and_a_picture_beside_its_file(here, capsys):
     """The rows are those of the tasks in Python. Nothing is replaced by itself, and nothing is run twice."""
-    said = printed(capsys, "run", FILE, "--no-film", "--workers", 1)
+    message = printed(capsys, "run", FILE, "--no-film", "--workers", 1)
     assert {path.name for path in here.iterdir()} - {"muro alto_runs.sqlite.lock"} == {
         "muro alto.toml",
         "muro alto_largest.png",
@@ -79,12 +79,12 @@ def test_a_run_writes_a_table_and_a_picture_beside_its_file(here, capsys):
         rows = list(csv.DictReader(file))
     assert [float(row["peak_over_alpha"]) for row in rows] == [task()["peak_over_alpha"] for task in tasks]
     assert [row["motion"] for row in rows] == [task.case.motion.name.replace(",", ";") for task in tasks]
-    assert "dynamic: largest of all runs" in said
-    assert "HOLDS" in said
+    assert "dynamic: largest of all runs" in message
+    assert "HOLDS" in message
     assert "muro alto_runs.csv: exists already" in refused(capsys, "run", FILE, "--no-film", "--workers", 1)
     assert main(["run", FILE, "--no-film", "--workers", "1", "--force"]) == Status.HOLDS
     again = capsys.readouterr()
-    assert again.out == said
+    assert again.out == message
     assert "4 had a row before" in again.err
 
 
@@ -108,22 +108,22 @@ def test_masonry_under_records_has_the_verdict_of_its_runs(here, capsys):
     assert task.solver == "explicit"  # no solver is named
     (found,) = assessment.dynamic_check(assessment.run()).values()
     for _ in range(2):
-        said = printed(
+        message = printed(
             capsys, "run", "walls/column.toml", "--no-film", "-w", 1, "--force", status=0 if found.holds else 1
         )
-        table = said[said.index("mechanism ") :]
+        table = message[message.index("mechanism ") :]
         for one in found.verdicts:
             assert f" {ratio_text(one.ratio)} " in table
-        assert re.search(r"^record +ends +largest rotation \[rad\]$", said, re.MULTILINE)
+        assert re.search(r"^record +ends +largest rotation \[rad\]$", message, re.MULTILINE)
 
 
 @pytest.mark.filterwarnings("ignore::mjrock.Implausible")
 def test_a_run_is_in_the_language_that_is_asked_for(here, capsys):
-    said = printed(capsys, "run", FILE, "--no-film", "--workers", 1, "--language", "it")
-    assert re.search(r"^accelerogramma +fine +rotazione massima su . \[-\]$", said, re.MULTILINE)
-    assert "invertito" in said
-    assert "media dei massimi" in said
-    assert not re.search(r"HOLDS|FAILS|reversed|\d\.\d+ m$", said, re.MULTILINE)
+    message = printed(capsys, "run", FILE, "--no-film", "--workers", 1, "--language", "it")
+    assert re.search(r"^accelerogramma +fine +rotazione massima su . \[-\]$", message, re.MULTILINE)
+    assert "invertito" in message
+    assert "media dei massimi" in message
+    assert not re.search(r"HOLDS|FAILS|reversed|\d\.\d+ m$", message, re.MULTILINE)
 
 
 @pytest.mark.slow
@@ -131,8 +131,8 @@ def test_a_film_is_that_of_the_largest_run(here, capsys):
     (here / "two.toml").write_text("theta0 = 0.05\nduration = 0.5\n" + "\n".join(
         f"[mechanisms.{name}.wall]\nthickness = {t}\nheight = 4.0" for name, t in (("thin", 0.5), ("thick", 1.0))
     ))  # fmt: skip
-    said = printed(capsys, "run", "walls/two.toml", "-w", 1, "-o", "there")
-    assert said.count("release") == 2
+    message = printed(capsys, "run", "walls/two.toml", "-w", 1, "-o", "there")
+    assert message.count("release") == 2
     names = {f"two_{name}_{end}" for name in ("thin", "thick") for end in ("runs.csv", "largest.png", "largest.gif")}
     assert names <= {path.name for path in Path("there").iterdir()}
     assert all((Path("there") / name).stat().st_size > 50 for name in names)
@@ -144,8 +144,8 @@ def test_records_are_found_beside_their_file_and_not_beside_the_caller(here, cap
     motion = mr.GroundMotion.synthetic(peak=1.5, duration=1.0, seed=1)
     motion.to_esm(here / "prove 2" / "IT.ST1..HNE.ASC", STATION_CODE="ST1", STREAM="HNE")
     (here / "recorded.toml").write_text(WALL + SITE + '[records]\nfolder = "prove 2"\npattern = "*.ASC"\n')
-    said = printed(capsys, "run", "walls/recorded.toml", "--no-film", "-w", 1)
-    assert said.count("ST1") >= 2
+    message = printed(capsys, "run", "walls/recorded.toml", "--no-film", "-w", 1)
+    assert message.count("ST1") >= 2
     (here / "elsewhere.toml").write_text(WALL + SITE + '[records]\nfolder = "walls"\n')
     assert refused(capsys, "run", "walls/elsewhere.toml").startswith("error: walls/elsewhere.toml")
 
@@ -156,7 +156,7 @@ def test_what_nothing_moves_is_not_run(here, capsys):
 
 
 @pytest.mark.parametrize(
-    ("values", "status", "said", "italian"),
+    ("values", "status", "message", "italian"),
     [
         (("20 cm", "60 cm"), Status.HOLDS, "60 cm is the first of 2", "60 cm è il primo di 2 valori per cui ogni"),
         (
@@ -167,9 +167,9 @@ def test_what_nothing_moves_is_not_run(here, capsys):
         ),
     ],
 )
-def test_a_design_says_which_value_holds(values, status, said, italian, here, capsys):
+def test_a_design_says_which_value_holds(values, status, message, italian, here, capsys):
     (here / "design.toml").write_text(WALL + SITE + DESIGN.format(*values))
-    assert said in printed(capsys, "design", "walls/design.toml", status=status)
+    assert message in printed(capsys, "design", "walls/design.toml", status=status)
     assert italian in printed(capsys, "design", "walls/design.toml", "-l", "it", status=status)
 
 
@@ -228,8 +228,8 @@ def test_an_arch_whose_support_moves_is_a_file(here, capsys):
     (here / "arch.toml").write_text(ARCH)
     case = mr.from_toml(here / "arch.toml").mechanisms[""].problem
     assert [(one.block, one.dx) for one in case.supports] == [("right_abutment", (0.0, 0.003))]
-    said = printed(capsys, "run", "walls/arch.toml", "--no-film", "-w", 1, "-l", "it")
-    row = next(line for line in said.splitlines() if line.startswith("cedimento imposto"))
+    message = printed(capsys, "run", "walls/arch.toml", "--no-film", "-w", 1, "-l", "it")
+    row = next(line for line in message.splitlines() if line.startswith("cedimento imposto"))
     found = mr.solve_explicit(case)
     assert float(row.split()[-1].replace(",", ".")) == pytest.approx(found.peak.max(), rel=1e-3)
     printed(capsys, "report", "walls/arch.toml")

@@ -180,16 +180,18 @@ def falls_through(spec, contact, speed):
 def test_a_blow_that_is_deeper_than_the_geoms_is_named_with_what_stops_it(speed):
     """A table-tennis ball on the stiffest contact of a step of 2 ms goes through its table, with what is named not."""
     text = scene(TABLE, BALL_ABOVE.format(0.1), gravity=G, timestep=2e-3)
-    asked = {"restitution": 0.89, "speed": speed}
+    requested = {"restitution": 0.89, "speed": speed}
     with pytest.warns(mr.ContactWarning) as caught:
-        contact = mr.contact_for(spec := mujoco.MjSpec.from_string(text), "ball", "table", **asked)
-    (said,) = (str(each.message) for each in caught if "a blow at" in str(each.message))
-    deep, k, step = map(float, re.findall(r"goes (\S+) m deep.* k = (\S+) N/m .* and (\S+) s resolves it", said)[0])
+        contact = mr.contact_for(spec := mujoco.MjSpec.from_string(text), "ball", "table", **requested)
+    (complaint,) = (str(each.message) for each in caught if "a blow at" in str(each.message))
+    deep, k, step = map(
+        float, re.findall(r"goes (\S+) m deep.* k = (\S+) N/m .* and (\S+) s resolves it", complaint)[0]
+    )
     xi = contact.xi
     formula = speed / contact.frequency * np.exp(-xi * np.arccos(xi) / np.sqrt(1 - xi**2))
     assert deep == pytest.approx(formula, rel=0.02)
     assert falls_through(spec, contact, speed) == 10
-    contact = mr.contact_for(spec := mujoco.MjSpec.from_string(text), "ball", "table", k=k, timestep=step, **asked)
+    contact = mr.contact_for(spec := mujoco.MjSpec.from_string(text), "ball", "table", k=k, timestep=step, **requested)
     assert falls_through(spec, contact, speed) == 0
 
 
@@ -274,6 +276,8 @@ def test_a_face_on_one_point_is_named():
 def test_the_factor_by_which_it_is_softer_is_given():
     text = scene(FLOOR, BALL_ABOVE.format(0.02).replace("size", 'solref=".001 1" size'), gravity=G, timestep=2e-3)
     contact = quietly(mr.contact_for, mujoco.MjSpec.from_string(text), "ball", "floor", xi=0.5)
-    (said,) = (each for each in contact.remarks if "softer than the contact that the model had" in each)
-    before, factor = (float(n) for n in re.findall(r"had, (\S+) N/m under the weight, by a factor of (\S+);", said)[0])
+    (complaint,) = (each for each in contact.remarks if "softer than the contact that the model had" in each)
+    before, factor = (
+        float(n) for n in re.findall(r"had, (\S+) N/m under the weight, by a factor of (\S+);", complaint)[0]
+    )
     assert before / contact.k == pytest.approx(factor, rel=0.02)

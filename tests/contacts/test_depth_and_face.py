@@ -29,7 +29,7 @@ def found_depth(spec, contact, push=0.0):
 
 
 @pytest.mark.parametrize(
-    ("asked", "push", "depth"),
+    ("requested", "push", "depth"),
     [
         ({"depth": 2e-4}, 0.0, 2e-4),
         ({"depth": 5e-4, "load": MASS * G + 30.0}, 30.0, 5e-4),
@@ -37,9 +37,9 @@ def found_depth(spec, contact, push=0.0):
         ({"k_n": 1e6}, 0.0, MASS * G / (1e6 * AREA)),
     ],
 )
-def test_the_depth_is_that_of_the_request(asked, push, depth):
+def test_the_depth_is_that_of_the_request(requested, push, depth):
     spec = mujoco.MjSpec.from_string(HEAVY_BOX)
-    contact = mr.contact_for(spec, "box", "floor", xi=1.0, friction=0, **asked)
+    contact = mr.contact_for(spec, "box", "floor", xi=1.0, friction=0, **requested)
     assert contact.contacts == 4
     if not push:
         assert contact.depth == pytest.approx(depth, rel=1e-6)
@@ -74,7 +74,7 @@ def test_the_pressure_of_an_actuator_at_its_controls_is_the_load():
 
 
 @pytest.mark.parametrize(
-    ("asked", "complaint"),
+    ("requested", "complaint"),
     [
         ({"k": 1e5, "depth": 1e-4}, "k = 100000.0 and depth = 0.0001 are given; give one of them"),
         (
@@ -87,9 +87,9 @@ def test_the_pressure_of_an_actuator_at_its_controls_is_the_load():
         ({"depth": 1e-4, "c": 3.0, "xi": 0.2}, "exactly one of c, restitution and xi"),
     ],
 )
-def test_what_cannot_be_is_refused(asked, complaint):
+def test_what_cannot_be_is_refused(requested, complaint):
     with pytest.raises(ValueError, match=complaint):
-        mr.contact_for(mujoco.MjModel.from_xml_string(ON_A_PLANE), "ball", "floor", **{"xi": 0.5} | asked)
+        mr.contact_for(mujoco.MjModel.from_xml_string(ON_A_PLANE), "ball", "floor", **{"xi": 0.5} | requested)
 
 
 def test_the_stiffest_contacts_of_a_step_rebound_as_they_say():

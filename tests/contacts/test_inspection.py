@@ -23,20 +23,20 @@ def made(h=1e-5, cone="elliptic", impratio=1, flags="", floor="", ball="", pair=
 
 def drawn(rng):
     """Attributes of a geom: either format of solref, mixtures of both, any impedance, priority, weight and friction."""
-    said = {"condim": rng.choice([1, 3, 4, 6]), "friction": rng.uniform(0.1, 1, 3)}
+    message = {"condim": rng.choice([1, 3, 4, 6]), "friction": rng.uniform(0.1, 1, 3)}
     kind = rng.choice(["none", "time", "direct", "undamped", "mixture"])
     time, direct = (rng.uniform(1e-3, 0.05), rng.uniform(0.1, 2)), (-1e4 * rng.random(), -50 * rng.random())
     values = {"time": time, "direct": direct, "undamped": (direct[0], 0), "mixture": (time[0], direct[1])}
     if kind in values:
-        said["solref"] = values[kind]
+        message["solref"] = values[kind]
     if rng.random() < 0.7:
-        said["solimp"] = (rng.uniform(-0.1, 1.1), rng.uniform(), rng.choice([0, 0.001]))
+        message["solimp"] = (rng.uniform(-0.1, 1.1), rng.uniform(), rng.choice([0, 0.001]))
     if rng.random() < 0.3:
-        said["priority"] = rng.integers(0, 3)
+        message["priority"] = rng.integers(0, 3)
     if rng.random() < 0.5:
-        said["solmix"] = rng.choice([0, 0.5, 2])
+        message["solmix"] = rng.choice([0, 0.5, 2])
     return " ".join(
-        f'{name}="{" ".join(str(float(v)) for v in np.ravel(value))}"' for name, value in said.items()
+        f'{name}="{" ".join(str(float(v)) for v in np.ravel(value))}"' for name, value in message.items()
     ).replace('.0"', '"')
 
 

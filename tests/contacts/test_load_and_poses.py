@@ -63,10 +63,10 @@ def robots():
 
 
 def test_a_keyframe_of_one_robot_leaves_the_other_and_several_serve_both():
-    asked = {("r?/foot", "floor"): {"k": 1e4, "restitution": 0.5}}
+    requested = {("r?/foot", "floor"): {"k": 1e4, "restitution": 0.5}}
     with pytest.warns(mr.ContactWarning, match=r"r1/foot on floor: .* 0\.468 kg at keyframe 'r1/home' and 4\.8 kg"):
-        mr.contacts_for(robots(), asked, keyframe="r0/home")
-    both = mr.contacts_for(robots(), asked, keyframe=("r0/home", "r1/home"))
+        mr.contacts_for(robots(), requested, keyframe="r0/home")
+    both = mr.contacts_for(robots(), requested, keyframe=("r0/home", "r1/home"))
     assert [contact.mass for contact in both] == pytest.approx([0.4677] * 2, rel=1e-3)
 
 
@@ -120,10 +120,10 @@ def test_a_foot_lands_on_whatever_lies_below(ground, kind, points, x):
     field = '<asset><hfield name="hf" nrow="41" ncol="41" size="4 4 .1 .1"/></asset><worldbody>'
     text = scene(GROUNDS[ground], FOOT.format(x=x, name="foot", kind=kind)).replace("<worldbody>", field)
     spec = mujoco.MjSpec.from_string(text)
-    asked = {"k": 1e5, "restitution": 0.5, "friction": 0, "normal": (0, 0, 1)}
+    requested = {"k": 1e5, "restitution": 0.5, "friction": 0, "normal": (0, 0, 1)}
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".*one of the geoms is uneven")
-        contacts = mr.contacts_for(spec, {("foot", "floor*"): asked})
+        contacts = mr.contacts_for(spec, {("foot", "floor*"): requested})
     assert [contact.mass * contact.contacts for contact in contacts] == pytest.approx([10.0] * len(contacts))
     if ground != "field":
         assert {contact.contacts for contact in contacts} == {points}
@@ -136,8 +136,8 @@ def test_a_foot_across_a_seam_of_tiles_is_twice_as_stiff():
     for x in (0.0, 0.5):
         foot = FOOT.format(x=x, name="foot", kind="box")
         spec = mujoco.MjSpec.from_string(scene(GROUNDS["tiles"], foot, timestep=1e-4, gravity=9.81))
-        asked = {"k": 1e5, "xi": 1.0, "friction": 0, "normal": (0, 0, 1)}
-        mr.contacts_for(spec, {("foot", "floor*"): asked}).apply(spec)
+        requested = {"k": 1e5, "xi": 1.0, "friction": 0, "normal": (0, 0, 1)}
+        mr.contacts_for(spec, {("foot", "floor*"): requested}).apply(spec)
         model = spec.compile()
         data = mujoco.MjData(model)
         data.qpos[1] = -0.3499  # just above the tiles
@@ -148,13 +148,13 @@ def test_a_foot_across_a_seam_of_tiles_is_twice_as_stiff():
 
 def test_where_the_pose_does_not_show_the_landing_it_says_so():
     spec = mujoco.MjSpec.from_string(scene(GROUNDS["tiles"], FOOT.format(x=0.2, name="foot", kind="sphere")))
-    asked = {"k": 1e5, "restitution": 0.5, "friction": 0}
-    mr.contact_for(spec, "foot", "floor0", **asked)
+    requested = {"k": 1e5, "restitution": 0.5, "friction": 0}
+    mr.contact_for(spec, "foot", "floor0", **requested)
     with pytest.warns(mr.ContactWarning, match=r"their shortest line meets a face of neither: how .* is not known"):
-        mr.contact_for(spec, "foot", "floor2", **asked)
+        mr.contact_for(spec, "foot", "floor2", **requested)
     for normal, error in (((0, 0, 0), "no direction"), ((0, 1), "normal has the shape")):
         with pytest.raises(ValueError, match=error):
-            mr.contact_for(spec, "foot", "floor2", normal=normal, **asked)
+            mr.contact_for(spec, "foot", "floor2", normal=normal, **requested)
 
 
 CUBE = "-.1 -.1 -.1 .1 -.1 -.1 -.1 .1 -.1 .1 .1 -.1 -.1 -.1 .1 .1 -.1 .1 -.1 .1 .1 .1 .1 .1"
@@ -172,14 +172,14 @@ def faces(low, high, joint="<freejoint/>", size=0.1):
 def test_a_turn_that_gives_faces_more_points_is_told_with_both_stiffnesses():
     """The static depth m g / (k points) of the turned box says that the second number is right."""
     spec = faces("box", "box")
-    said = (
+    message = (
         r"a turn of 0.01 degrees about the normal gives the two faces 8 points for 4: .* has 2e\+05 N/m for 1e\+05 N/m"
     )
-    with pytest.warns(mr.ContactWarning, match=said):
+    with pytest.warns(mr.ContactWarning, match=message):
         contact = mr.contact_for(spec, "high", "low", k=2.5e4, xi=1.0, friction=0.6)
     contact.apply(spec)
     (found,) = mr.inspect_contacts(model := spec.compile())
-    assert any(re.search(said, note) for note in found.notes)
+    assert any(re.search(message, note) for note in found.notes)
     assert [depth(model, degrees) for degrees in (0, 0.01)] == pytest.approx([9.81e-4, 4.905e-4], rel=1e-3)
 
 

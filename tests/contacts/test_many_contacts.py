@@ -13,12 +13,15 @@ FEET = "".join(
     for i in range(3)
 )
 ROBOT = scene(FLOOR, FEET, '<body name="pad" pos="0 3 .1"><freejoint/><geom size=".1" mass="1"/></body>')
-ASKED = {("foot*", "floor"): {"k": 1e6, "restitution": 0.5}, ("pad", "foot0"): {"k": 2e6, "xi": 0.1, "friction": 0.0}}
+REQUESTED = {
+    ("foot*", "floor"): {"k": 1e6, "restitution": 0.5},
+    ("pad", "foot0"): {"k": 2e6, "xi": 0.1, "friction": 0.0},
+}
 
 
 def test_they_are_those_of_contact_for():
     spec = mujoco.MjSpec.from_string(ROBOT)
-    contacts = mr.contacts_for(spec, ASKED, timestep=2e-5)
+    contacts = mr.contacts_for(spec, REQUESTED, timestep=2e-5)
     assert [(contact.geom1, contact.geom2) for contact in contacts] == [
         ("foot0", "floor"), ("foot1", "floor"), ("foot2", "floor"), ("", "foot0"),
     ]  # fmt: skip
@@ -30,14 +33,14 @@ def test_they_are_those_of_contact_for():
 
 def test_a_specification_is_compiled_once(monkeypatch):
     spec = mujoco.MjSpec.from_string(ROBOT)
-    asked = {("foot*", "floor"): {"k": 1e6, "restitution": 0.5}}
+    requested = {("foot*", "floor"): {"k": 1e6, "restitution": 0.5}}
     times = []
     for module in ("make", "contact"):
         monkeypatch.setattr(
             f"mjrock.contacts.{module}.compiled_model",
             lambda model: times.append(1) or geoms.compiled_model(model),
         )
-    contacts = mr.contacts_for(spec, asked)
+    contacts = mr.contacts_for(spec, requested)
     contacts.apply(spec)
     assert len(times) == 2
     model = spec.compile()

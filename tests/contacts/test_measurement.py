@@ -17,9 +17,9 @@ ARM = """<body pos="0 0 .3"><joint name="hinge" axis="0 1 0"/><geom size=".01" m
 <geom name="tip" size=".05" pos=".4 0 {z}" mass="1"/></body>"""
 
 
-def model_with(body, geom, timestep=2e-4, options="", **asked):
+def model_with(body, geom, timestep=2e-4, options="", **requested):
     spec = mujoco.MjSpec.from_string(scene(FLOOR, body, timestep=timestep, gravity=G, options=options))
-    contact_for(spec, geom, "floor", **{"depth": 1e-4, "restitution": 0.5, "friction": 0.8} | asked).apply(spec)
+    contact_for(spec, geom, "floor", **{"depth": 1e-4, "restitution": 0.5, "friction": 0.8} | requested).apply(spec)
     return spec.compile()
 
 
@@ -77,11 +77,12 @@ def test_the_pyramidal_cone_promises_no_creep():
 
 
 @pytest.mark.parametrize(
-    ("asked", "complaint"), [({"speed": 0.0}, "speed = 0 m/s is outside"), ({"duration": -1.0}, "duration = -1 s is")]
+    ("requested", "complaint"),
+    [({"speed": 0.0}, "speed = 0 m/s is outside"), ({"duration": -1.0}, "duration = -1 s is")],
 )
-def test_what_cannot_be_is_refused(asked, complaint):
+def test_what_cannot_be_is_refused(requested, complaint):
     with pytest.raises(ValueError, match=complaint):
-        measure(mujoco.MjModel.from_xml_string(scene(FLOOR, BALL)), "ball", "floor", **asked)
+        measure(mujoco.MjModel.from_xml_string(scene(FLOOR, BALL)), "ball", "floor", **requested)
 
 
 def test_the_command_prints_the_table(tmp_path):

@@ -67,9 +67,9 @@ def test_a_solver_that_does_not_converge_is_given_a_smaller_impratio_and_creeps_
         contacts = stacked(spec := few(solver, 100))
     contacts.apply(spec, iterations=True)
     model = spec.compile()
-    (said,) = contacts.caveats(spec)
+    (message,) = contacts.caveats(spec)
     assert model.opt.impratio == contacts.contacts[0].needs.impratio < contacts.impratio / 10
-    (rate,) = map(float, re.findall(r"creeps at F / \((\S+) 1/s m\)", said))
+    (rate,) = map(float, re.findall(r"creeps at F / \((\S+) 1/s m\)", message))
     model.opt.gravity[:] = 9.81 * math.sin(math.radians(10)), 0, -9.81 * math.cos(math.radians(10))
     data, most = mujoco.MjData(model), 0
     for _ in range(2000):

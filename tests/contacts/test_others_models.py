@@ -11,7 +11,7 @@ import pytest
 
 import mjrock as mr
 
-ASKED = {"k": 5e4, "restitution": 0.2}
+REQUESTED = {"k": 5e4, "restitution": 0.2}
 QUADRUPED = "dm_control/suite/quadruped.xml"
 ANT = "gymnasium/envs/mujoco/assets/ant.xml"
 
@@ -25,7 +25,7 @@ def model_of(path):
     return mujoco.MjSpec.from_file(str(Path(found.origin).parents[1] / path))
 
 
-def told(call, *arguments, **named):
+def printed(call, *arguments, **named):
     """What a call returns, and what it warns of."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -34,14 +34,14 @@ def told(call, *arguments, **named):
 
 
 def test_a_ball_of_condim_6_keeps_rolling_friction():
-    ball, _ = told(mr.contact_for, model_of(QUADRUPED), "ball", "floor", friction=0.9, **ASKED)
+    ball, _ = printed(mr.contact_for, model_of(QUADRUPED), "ball", "floor", friction=0.9, **REQUESTED)
     assert (ball.condim, ball.friction) == (6, (0.9, 0.9, 0.005, 0.005, 0.005))
 
 
 def test_wildcards_name_what_the_engine_lets_collide():
     """The finger has geoms that are drawn only, and bodies that are excluded."""
     spec = model_of("dm_control/suite/finger.xml")
-    found, _ = told(mr.contacts_for, spec, {("*", "*"): {"k": 1e4, "xi": 0.3, "mass": 1.0}})
+    found, _ = printed(mr.contacts_for, spec, {("*", "*"): {"k": 1e4, "xi": 0.3, "mass": 1.0}})
     candidates = {(one.geom1, one.geom2) for one in mr.inspect_contacts(spec)}
     assert {tuple(spec.compile().geom(i).name for i in sorted(contact.ids)) for contact in found} == candidates
     assert 1 < len(candidates) < 20
@@ -50,55 +50,56 @@ def test_wildcards_name_what_the_engine_lets_collide():
 def test_other_contacts_of_a_pyramidal_robot_are_named_or_kept():
     spec, kept = model_of(QUADRUPED), model_of(QUADRUPED)
     before = {(one.geom1, one.geom2): one.k_loaded for one in mr.inspect_contacts(spec)}
-    feet, _ = told(mr.contacts_for, spec, {("toe*", "floor"): ASKED})
-    _, (sentence,) = told(feet.apply, spec)
+    feet, _ = printed(mr.contacts_for, spec, {("toe*", "floor"): REQUESTED})
+    _, (sentence,) = printed(feet.apply, spec)
     assert "stiffness of 45 other contacts of the model under the weight: floor on ball (8e+06 to " in sentence
-    _, nothing = told(feet.apply, kept, keep_others=True)
+    _, nothing = printed(feet.apply, kept, keep_others=True)
     assert nothing == []
     assert len(kept.pairs) == 4 + 45
     own = {frozenset((contact.geom1, contact.geom2)) for contact in feet}
     after = {frozenset((one.geom1, one.geom2)): one.k_loaded for one in mr.inspect_contacts(kept)}
     others = {geoms: k for geoms, k in before.items() if frozenset(geoms) not in own}
     assert [after[frozenset(geoms)] for geoms in others] == pytest.approx(list(others.values()), rel=0.1)
-    assert len(told(mr.contacts_for, model_of(QUADRUPED), {("toe*", "floor"): ASKED})[1]) == 5
+    assert len(printed(mr.contacts_for, model_of(QUADRUPED), {("toe*", "floor"): REQUESTED})[1]) == 5
 
 
 def test_the_two_capsules_of_a_foot_share_its_mass():
     spec = model_of("dm_control/suite/humanoid.xml")
-    feet, said = told(mr.contacts_for, spec, {("*_right_foot", "floor"): ASKED}, timestep=1e-3)
+    feet, complaint = printed(mr.contacts_for, spec, {("*_right_foot", "floor"): REQUESTED}, timestep=1e-3)
     assert [contact.contacts for contact in feet] == [2, 2]
-    one, about = told(mr.contact_for, spec, "right_right_foot", "floor", timestep=1e-3, **ASKED)
+    one, about = printed(mr.contact_for, spec, "right_right_foot", "floor", timestep=1e-3, **REQUESTED)
     assert one.mass == pytest.approx(feet.contacts[0].mass)
     assert any("it lands together with left_right_foot on floor, and shares the mass" in sentence for sentence in about)
-    assert not any("lands together" in sentence for sentence in said)
+    assert not any("lands together" in sentence for sentence in complaint)
 
 
 def test_without_k_an_ant_is_soft():
-    ankles, said = told(mr.contacts_for, model_of(ANT), {("*ankle*", "floor"): {"restitution": 0.2}})
+    ankles, complaint = printed(mr.contacts_for, model_of(ANT), {("*ankle*", "floor"): {"restitution": 0.2}})
     assert any(
-        re.search(r"resolves, is softer than the contact that the model had, .*e\+03 N/m under", one) for one in said
+        re.search(r"resolves, is softer than the contact that the model had, .*e\+03 N/m under", one)
+        for one in complaint
     )
-    assert any("128% of their smallest half extent" in sentence for sentence in said)
+    assert any("128% of their smallest half extent" in sentence for sentence in complaint)
     (tree,) = {contact.depth * contact.k * contact.contacts for contact in ankles}
     assert tree == pytest.approx(float(mujoco.mj_getTotalmass(model_of(ANT).compile())) * 9.81)
 
 
 def test_an_ant_that_is_attached():
     child, parent = model_of(ANT), mujoco.MjSpec()
-    ankles, _ = told(mr.contacts_for, child, {("*ankle*", "floor"): ASKED}, timestep=1e-4)
-    told(ankles.apply, child)
+    ankles, _ = printed(mr.contacts_for, child, {("*ankle*", "floor"): REQUESTED}, timestep=1e-4)
+    printed(ankles.apply, child)
     parent.attach(child, prefix="a/", frame=parent.worldbody.add_frame())
-    model, _ = told(parent.compile)
-    found, _ = told(ankles.caveats, model, "a/")
+    model, _ = printed(parent.compile)
+    found, _ = printed(ankles.caveats, model, "a/")
     assert any("the friction cone is pyramidal" in sentence for sentence in found)
     assert any("impratio = 1 is below" in sentence for sentence in found)
 
 
 def test_two_states_of_a_hopper():
     spec = model_of("gymnasium/envs/mujoco/assets/hopper.xml")
-    told(told(mr.contact_for, spec, "foot_geom", "floor", friction=0.8, **ASKED)[0].apply, spec)
+    printed(printed(mr.contact_for, spec, "foot_geom", "floor", friction=0.8, **REQUESTED)[0].apply, spec)
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_EULER
-    model, _ = told(spec.compile)
+    model, _ = printed(spec.compile)
     friction = mr.CoulombFriction(model)
     friction(mujoco.MjData(model))
     with pytest.raises(ValueError, match="data is another MjData"):

@@ -114,7 +114,7 @@ def test_it_warns_of_what_spoils_every_contact(options):
 
 
 @pytest.mark.parametrize(
-    ("text", "asked", "complaint"),
+    ("text", "requested", "complaint"),
     [
         (ON_A_PLANE, {"timestep": 1e-3}, "timestep = 0.001 s is long .* 0.00038 s resolves it"),
         (scene(FLOOR, BALL, pair='<pair geom1="ball" geom2="floor" margin=".01"/>'), {}, "a margin of 0.01 m"),
@@ -124,8 +124,8 @@ def test_it_warns_of_what_spoils_every_contact(options):
         ),
     ],
 )
-def test_it_warns_of_what_spoils_this_contact(text, asked, complaint):
-    arguments = {"geom1": "ball", "geom2": "floor", "k": 1e6, "restitution": 0.5} | asked
+def test_it_warns_of_what_spoils_this_contact(text, requested, complaint):
+    arguments = {"geom1": "ball", "geom2": "floor", "k": 1e6, "restitution": 0.5} | requested
     with pytest.warns(UserWarning, match=complaint):
         mr.contact_for(mujoco.MjSpec.from_string(text), **arguments)
 
@@ -143,16 +143,16 @@ def test_the_step_that_it_names_is_not_warned_of():
 def test_the_step_that_it_names_is_the_last_word(k, timestep):
     """The step is rounded down. Where MuJoCo represents no such contact, both steps are named at once."""
     spec = mujoco.MjSpec.from_string(ON_A_PLANE)
-    asked = {"k": k, "restitution": 0.5}
+    requested = {"k": k, "restitution": 0.5}
     if k == 1e12 and timestep == 1e-3:
         with pytest.raises(ValueError, match=r"the longest step is 8.94e-05 s, and 3.8e-07 s resolves") as refused:
-            mr.contact_for(spec, "ball", "floor", **asked, timestep=timestep)
+            mr.contact_for(spec, "ball", "floor", **requested, timestep=timestep)
         words = str(refused.value)
     else:
         with pytest.warns(UserWarning, match="s resolves it") as caught:
-            mr.contact_for(spec, "ball", "floor", **asked, timestep=timestep)
+            mr.contact_for(spec, "ball", "floor", **requested, timestep=timestep)
         words = str(caught[0].message)
-    mr.contact_for(spec, "ball", "floor", **asked, timestep=float(words.split(" s resolves")[0].split()[-1]))
+    mr.contact_for(spec, "ball", "floor", **requested, timestep=float(words.split(" s resolves")[0].split()[-1]))
 
 
 def test_two_pairs_of_the_same_geoms():
@@ -205,7 +205,7 @@ def _write(owner, name, value):
 
 
 @pytest.mark.parametrize(
-    ("asked", "complaint"),
+    ("requested", "complaint"),
     [
         ({}, "exactly one of c, restitution and xi has to be given; given are none"),
         (
@@ -238,9 +238,9 @@ def _write(owner, name, value):
         ({"c": 1.0, "newmark_beta": 1e6, "timestep": 1e-3}, "newmark_beta = 1e.06 requires more inertia"),
     ],
 )
-def test_what_cannot_be_is_refused(asked, complaint):
+def test_what_cannot_be_is_refused(requested, complaint):
     model = mujoco.MjModel.from_xml_string(ON_A_PLANE)
-    arguments = {"model": model, "geom1": "ball", "geom2": "floor", "k": 1e6} | asked
+    arguments = {"model": model, "geom1": "ball", "geom2": "floor", "k": 1e6} | requested
     with pytest.raises((ValueError, TypeError), match=complaint):
         mr.contact_for(**arguments)
 

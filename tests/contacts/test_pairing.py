@@ -59,9 +59,9 @@ def test_the_integrators_that_keep_the_energy(integrator, xi):
     assert measured == pytest.approx(contact.restitution, rel=0.003 if integrator == "RK4" else 0.004)
 
 
-def made_with_a_long_step(text, **asked):
+def made_with_a_long_step(text, **requested):
     spec = mujoco.MjSpec.from_string(text)
-    contact = mr.contact_for(spec, "ball", "floor", **asked)
+    contact = mr.contact_for(spec, "ball", "floor", **requested)
     contact.apply(spec)
     return contact, spec.compile()
 

@@ -12,7 +12,7 @@ from pairs import BALL, FLAT_BOX, FLOOR, ON_A_PLANE, scene
 import mjrock as mr
 
 ROLLING = ON_A_PLANE.replace('mass="2"', 'mass="2" condim="{}" friction=".7 .02 .003"')
-ASKED = {"k": 1e5, "restitution": 0.5}
+REQUESTED = {"k": 1e5, "restitution": 0.5}
 FOOT = '<body name="foot" pos="0 0 .1"><freejoint/><geom name="box" type="box" size=".1 .1 .02" mass="4"/>{}</body>'
 TOES = [f'<geom name="toe{i}" pos="{x} {y} -.03" size=".02" mass="0"/>'
         for i, (x, y) in enumerate(((0.08, 0.08), (0.08, -0.08), (-0.08, 0.08), (-0.08, -0.08)))]  # fmt: skip
@@ -29,18 +29,18 @@ def spec_of(text):
 @pytest.mark.parametrize(("condim", "kept"), [(1, 3), (3, 3), (4, 4), (6, 6)])
 def test_friction_keeps_condim_and_what_it_does_not_name(condim, kept):
     text = ROLLING.format(condim).replace('type="plane"', f'type="plane" condim="{condim}"')
-    contact = mr.contact_for(spec_of(text), "ball", "floor", friction=0.9, **ASKED)
+    contact = mr.contact_for(spec_of(text), "ball", "floor", friction=0.9, **REQUESTED)
     assert (contact.condim, contact.friction) == (kept, (0.9, 0.9, 0.02, 0.003, 0.003))
-    five = mr.contact_for(spec_of(ROLLING.format(6)), "ball", "floor", friction=(0.4, 0.5, 0.1, 0.2, 0.3), **ASKED)
+    five = mr.contact_for(spec_of(ROLLING.format(6)), "ball", "floor", friction=(0.4, 0.5, 0.1, 0.2, 0.3), **REQUESTED)
     assert (five.condim, five.friction) == (6, (0.4, 0.5, 0.1, 0.2, 0.3))
-    assert mr.contact_for(spec_of(text), "ball", "floor", friction=0.0, **ASKED).condim == 1
+    assert mr.contact_for(spec_of(text), "ball", "floor", friction=0.0, **REQUESTED).condim == 1
 
 
 def test_a_spinning_ball_stops_as_in_the_model():
     ball = BALL.replace('mass="2"', 'mass="2" condim="4" friction=".7 .02 .003"')
     text = scene(FLOOR, ball, timestep=2e-4, gravity=9.81)
     spec = spec_of(text)
-    mr.contact_for(spec, "ball", "floor", friction=0.7, **ASKED).apply(spec)
+    mr.contact_for(spec, "ball", "floor", friction=0.7, **REQUESTED).apply(spec)
     spins = []
     for model in (spec_of(text).compile(), spec.compile()):
         data = mujoco.MjData(model)
@@ -52,10 +52,10 @@ def test_a_spinning_ball_stops_as_in_the_model():
 
 def test_friction_that_condim_leaves_out_is_said():
     with pytest.warns(mr.ContactWarning, match=r"friction that condim 3 leaves out; give the geoms condim 4"):
-        mr.contact_for(spec_of(ON_A_PLANE), "ball", "floor", friction=(0.4, 0.4, 0.1, 0.0, 0.0), **ASKED)
-    mr.contact_for(spec_of(ON_A_PLANE), "ball", "floor", friction=(0.4, 0.4, 0.0, 0.0, 0.0), **ASKED)
+        mr.contact_for(spec_of(ON_A_PLANE), "ball", "floor", friction=(0.4, 0.4, 0.1, 0.0, 0.0), **REQUESTED)
+    mr.contact_for(spec_of(ON_A_PLANE), "ball", "floor", friction=(0.4, 0.4, 0.0, 0.0, 0.0), **REQUESTED)
     with pytest.raises(ValueError, match=r"has 3 numbers; one of sliding is needed, or five"):
-        mr.contact_for(spec_of(ON_A_PLANE), "ball", "floor", friction=(0.4, 0.1, 0.1), **ASKED)
+        mr.contact_for(spec_of(ON_A_PLANE), "ball", "floor", friction=(0.4, 0.1, 0.1), **REQUESTED)
 
 
 SEEN = '<geom name="ball_seen" type="box" size=".15 .15 .15" mass="0" contype="0" conaffinity="0"/>'
@@ -76,20 +76,20 @@ def test_wildcards_obey_the_filters_and_a_plain_name_says_that_it_overrides_them
     text, names, reason = KEPT_APART[why]
     spec = spec_of(text)
     with pytest.raises(ValueError, match="are geoms that MuJoCo keeps apart"):
-        mr.contacts_for(spec, {(names[0][:-1] + "?", names[1]): ASKED | {"mass": 1.0}})
+        mr.contacts_for(spec, {(names[0][:-1] + "?", names[1]): REQUESTED | {"mass": 1.0}})
     with pytest.warns(mr.ContactWarning, match=f"MuJoCo keeps these geoms apart, since {reason}"):
-        contact = mr.contact_for(spec, *names, mass=1.0, **ASKED)
+        contact = mr.contact_for(spec, *names, mass=1.0, **REQUESTED)
     contact.apply(spec)
     model = spec.compile()
     assert contact.caveats(model) == ()
-    assert mr.contacts_for(model, {(names[0][:-1] + "?", names[1]): ASKED | {"mass": 1.0}}).contacts == (contact,)
+    assert mr.contacts_for(model, {(names[0][:-1] + "?", names[1]): REQUESTED | {"mass": 1.0}}).contacts == (contact,)
 
 
 def test_a_visual_geom_stays_visual():
     """The ball rests on its own radius, not on the box that is drawn around it."""
     text = scene(FLOOR, WITH_SEEN, timestep=2e-4, gravity=9.81)
     spec = spec_of(text)
-    contacts = mr.contacts_for(spec, {("ball*", "floor"): ASKED})
+    contacts = mr.contacts_for(spec, {("ball*", "floor"): REQUESTED})
     contacts.apply(spec)
     data = mujoco.MjData(model := spec.compile())
     mujoco.mj_step(model, data, 4000)
@@ -108,7 +108,7 @@ def test_the_elliptic_cone_is_told_to_others_or_kept_from_them():
     text = scene(FLOOR, BALL, NEIGHBOUR, timestep=1e-3, gravity=9.81).replace("<worldbody>", SLIPPERY)
     depths = [sunk(spec_of(text))]
     for keep in (False, True):
-        contact = mr.contact_for(spec := spec_of(text), "ball", "floor", **ASKED)
+        contact = mr.contact_for(spec := spec_of(text), "ball", "floor", **REQUESTED)
         if keep:
             contact.apply(spec, keep_others=True)
         else:
@@ -130,7 +130,7 @@ def test_a_pair_of_the_model_is_kept(mu, solref, solimp):
     own = '<pair geom1="ball" geom2="floor"/><pair geom1="ball" geom2="crate" condim="1"/>'
     model = mujoco.MjModel.from_xml_string(scene(FLOOR, BALL, NEIGHBOUR, timestep=1e-4, gravity=1.0, pair=pair + own))
     before = next(found for found in mr.inspect_contacts(model) if found.geom2 == "crate")
-    mr.contact_for(model, "ball", "floor", **ASKED).apply(model, keep_others=True)
+    mr.contact_for(model, "ball", "floor", **REQUESTED).apply(model, keep_others=True)
     after = next(found for found in mr.inspect_contacts(model) if found.geom2 == "crate")
     exact = 1e-9 if len({*solimp.split()[:2]}) == 1 else 0.05
     assert (after.k, after.c, after.inertia) == pytest.approx((before.k, before.c, before.inertia), rel=exact)
@@ -141,18 +141,18 @@ def test_what_cannot_be_kept_is_named():
     text = scene(FLOOR, BALL, NEIGHBOUR, timestep=1e-3).replace("<worldbody>", SLIPPERY)
     nameless = spec_of(text.replace('geom name="crate"', "geom"))
     with pytest.warns(mr.ContactWarning, match=r"2 other contacts .*: floor on crate\[2\]"):
-        mr.contact_for(nameless, "ball", "floor", **ASKED).apply(nameless, keep_others=True)
+        mr.contact_for(nameless, "ball", "floor", **REQUESTED).apply(nameless, keep_others=True)
     model = mujoco.MjModel.from_xml_string(text.replace("<contact>", '<contact><pair geom1="ball" geom2="floor"/>'))
     with pytest.warns(mr.ContactWarning, match="2 other contacts"):
-        mr.contact_for(model, "ball", "floor", **ASKED).apply(model, keep_others=True)
+        mr.contact_for(model, "ball", "floor", **REQUESTED).apply(model, keep_others=True)
 
 
-def landed(text, asked, turned=0.0):
+def landed(text, requested, turned=0.0):
     """e of the foot that lands on four toes, and the contacts."""
     spec = spec_of(text)
     qpos = spec.compile().qpos0.copy()
     qpos[3:7] = np.cos(turned / 2), 0, np.sin(turned / 2), 0
-    contacts = mr.contacts_for(spec, asked, qpos=qpos)
+    contacts = mr.contacts_for(spec, requested, qpos=qpos)
     contacts.apply(spec)
     data = mujoco.MjData(model := spec.compile())
     data.qpos[2], data.qvel[2] = 0.0501, -1.0
@@ -175,12 +175,12 @@ def test_geoms_of_a_foot_share_its_mass():
 
 def test_what_a_foot_has_besides_is_said():
     text = scene(FLOOR, FOOT.format("".join(TOES)), timestep=1e-4)
-    asked = {"k": 1e5, "restitution": 0.3}
+    requested = {"k": 1e5, "restitution": 0.3}
     with pytest.warns(
         mr.ContactWarning, match="it lands together with toe1 on floor, toe2 on floor, toe3 on floor, and"
     ):
-        mr.contact_for(spec_of(text), "toe0", "floor", **asked)
-    others = {("toe[12]", "floor"): asked, ("toe0", "floor"): asked | {"k": 2e5}, ("toe3", "floor"): asked}
+        mr.contact_for(spec_of(text), "toe0", "floor", **requested)
+    others = {("toe[12]", "floor"): requested, ("toe0", "floor"): requested | {"k": 2e5}, ("toe3", "floor"): requested}
     with pytest.warns(
         mr.ContactWarning, match="toe1 on floor, toe2 on floor, toe3 on floor: it lands together with toe0"
     ):
@@ -188,7 +188,7 @@ def test_what_a_foot_has_besides_is_said():
 
 
 @pytest.mark.parametrize(
-    ("turned", "points", "said"),
+    ("turned", "points", "complaint"),
     [
         (0.0005, 4, ""),
         (0.01, 4, "taken to land together with it touches up to 0.0016 m sooner or later; give the pose"),
@@ -199,15 +199,15 @@ def test_what_a_foot_has_besides_is_said():
         ),
     ],
 )
-def test_a_foot_that_is_not_level_is_said(turned, points, said):
+def test_a_foot_that_is_not_level_is_said(turned, points, complaint):
     text = scene(FLOOR, FOOT.format("".join(TOES)), timestep=1e-4)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         _, contacts = landed(text, {("toe*", "floor"): {"k": 1e5, "restitution": 0.3}}, turned)
     assert {contact.contacts for contact in contacts} == {points}
     (message,) = [str(warning.message) for warning in caught] or [""]
-    assert said in message
-    assert bool(said) == bool(message)
+    assert complaint in message
+    assert bool(complaint) == bool(message)
 
 
 def test_without_k_it_says_where_it_is_soft():
@@ -220,13 +220,13 @@ def test_without_k_it_says_where_it_is_soft():
     assert contact.depth == pytest.approx(2 * 9.81 / contact.k)
     fine = mr.contact_for(ball, "ball", "floor", restitution=0.5, timestep=1.6e-3)
     assert fine.k > 5.34e4
-    box = mr.contact_for(spec_of(FLAT_BOX.replace('gravity="0 0 -0.0"', "")), "box", "floor", **ASKED)
+    box = mr.contact_for(spec_of(FLAT_BOX.replace('gravity="0 0 -0.0"', "")), "box", "floor", **REQUESTED)
     assert box.depth == pytest.approx(2 * 9.81 / 4e5)
 
 
 def test_attached_it_is_found_by_its_prefix_and_lacks_the_options():
     child, parent = spec_of(ON_A_PLANE), spec_of("<mujoco/>")
-    contact = mr.contact_for(child, "ball", "floor", **ASKED)
+    contact = mr.contact_for(child, "ball", "floor", **REQUESTED)
     contact.apply(child)
     parent.attach(child, prefix="robot-", frame=parent.worldbody.add_frame(pos=[0, 0, 1]))
     with warnings.catch_warnings():
@@ -239,7 +239,7 @@ def test_attached_it_is_found_by_its_prefix_and_lacks_the_options():
         assert "impratio = 1 is below" in found[2]
     with pytest.raises(ValueError, match="'ball' is not a geom or body"):
         contact.caveats(model)
-    again = mr.contact_for(parent, "robot-ball", "robot-floor", timestep=1e-5, **ASKED)
+    again = mr.contact_for(parent, "robot-ball", "robot-floor", timestep=1e-5, **REQUESTED)
     again.apply(parent)
     assert again.caveats(parent) == ()
 
@@ -248,12 +248,12 @@ def test_a_flex_is_named():
     cloth = """<flexcomp name="cloth" type="grid" count="3 3 1" spacing=".1 .1 .1" radius=".01" dim="2">
     <edge equality="true"/></flexcomp>"""
     with pytest.raises(ValueError, match="geom1 = 'cloth' is a flex, which no explicit pair covers"):
-        mr.contact_for(spec_of(scene(FLOOR, cloth)), "cloth", "floor", **ASKED)
+        mr.contact_for(spec_of(scene(FLOOR, cloth)), "cloth", "floor", **REQUESTED)
 
 
 def test_its_attributes_and_its_line():
     contact = mr.contact_for(
-        spec_of(scene(FLOOR, BALL, gravity=9.81)), "ball", "floor", friction=0.3, speed=1.0, **ASKED
+        spec_of(scene(FLOOR, BALL, gravity=9.81)), "ball", "floor", friction=0.3, speed=1.0, **REQUESTED
     )
     spec = spec_of(ON_A_PLANE)
     names = {"geom1": "geomname1", "geom2": "geomname2"}
@@ -272,6 +272,6 @@ def test_its_attributes_and_its_line():
 
 def test_a_later_entry_replaces_what_wildcards_named():
     text = scene(FLOOR, *(BALL.replace("ball", f"ball{i}") for i in range(3)))
-    harder = ASKED | {"k": 3e5}
-    found = mr.contacts_for(spec_of(text), {("ball*", "floor"): ASKED, ("ball1", "floor"): harder})
+    harder = REQUESTED | {"k": 3e5}
+    found = mr.contacts_for(spec_of(text), {("ball*", "floor"): REQUESTED, ("ball1", "floor"): harder})
     assert {contact.geom1: contact.k for contact in found} == {"ball0": 1e5, "ball1": 3e5, "ball2": 1e5}

@@ -134,9 +134,9 @@ def test_contacts_of_flexes_are_those_of_the_engine(tmp_path, capsys, floor, sof
         assert low * (1 - 1e-4) <= each.min()
         assert each.max() <= high * (1 + 1e-4)
         assert "box" in floor or each.min() == pytest.approx(low, rel=1e-4)
-    said = lines_of(capsys, "inspect", path)
-    assert said[0] == "This model has no contact of two geoms that can act."
-    assert said[2].startswith(f"soft on floor: k = {found.k[0]:.4g}")
+    message = lines_of(capsys, "inspect", path)
+    assert message[0] == "This model has no contact of two geoms that can act."
+    assert message[2].startswith(f"soft on floor: k = {found.k[0]:.4g}")
     path.write_text(path.read_text().replace("Euler", "discrete"))
     assert lines_of(capsys, "inspect", path)[3].startswith("For all of them: the integrator `discrete` takes energy")
 

@@ -93,9 +93,11 @@ def test_its_figures():
 def test_its_table_of_gravity():
     rows = [row.strip("|").split("|") for row in PAGE.splitlines() if row.startswith("| 0.")]
     assert len(rows) == 5
-    for asked, *left in rows:
+    for requested, *left in rows:
         for pull, e in zip((0.009, 0.054, 0.085), left, strict=True):
-            assert falling_rebound(rebound_damping(float(asked)), pull).restitution == pytest.approx(float(e), abs=2e-3)
+            assert falling_rebound(rebound_damping(float(requested)), pull).restitution == pytest.approx(
+                float(e), abs=2e-3
+            )
 
 
 def test_its_two_lines_measure_e():

@@ -22,10 +22,10 @@ def spec_of(text):
     return mujoco.MjSpec.from_string(text)
 
 
-def quietly(text, *geoms, **asked):
+def quietly(text, *geoms, **requested):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return mr.contact_for(spec_of(text), *geoms, **asked)
+        return mr.contact_for(spec_of(text), *geoms, **requested)
 
 
 @pytest.mark.parametrize("name", ["ball, g/(omega v) = .085", "box on an edge, 45 deg", "leg, bent", "geared, 0.2 ms"])
@@ -68,7 +68,7 @@ def test_a_keyframe_that_differs_is_named():
 
 
 @pytest.mark.parametrize(
-    ("asked", "complaint"),
+    ("requested", "complaint"),
     [
         ({"keyframe": "sit"}, "keyframe = 'sit' of type str is not a keyframe of this model; it has: bent"),
         ({"keyframe": 1}, "keyframe = 1 is outside the valid range 0 to 0"),
@@ -80,12 +80,12 @@ def test_a_keyframe_that_differs_is_named():
         ({"k": None, "restitution": None}, "exactly one of c, restitution and xi"),
     ],
 )
-def test_what_cannot_be_is_refused(asked, complaint):
+def test_what_cannot_be_is_refused(requested, complaint):
     with pytest.raises(ValueError, match=complaint):
-        mr.contact_for(spec_of(LEG), "foot", "floor", **{"k": 5e4, "restitution": 0.2} | asked)
-    if "keyframe" in asked:
+        mr.contact_for(spec_of(LEG), "foot", "floor", **{"k": 5e4, "restitution": 0.2} | requested)
+    if "keyframe" in requested:
         with pytest.raises(ValueError, match="keyframe"):
-            mr.inspect_contacts(spec_of(LEG), **asked)
+            mr.inspect_contacts(spec_of(LEG), **requested)
 
 
 def test_a_model_without_keyframes_says_so():
@@ -302,8 +302,8 @@ def test_dry_friction_of_a_joint_is_named_with_what_it_takes():
         while data.qvel[0] < 0 or (data.ncon and data.efc_force.max() > 0):
             mujoco.mj_step(model, data)
         left.append(float(data.qvel[0]))
-    said = str(caught[0].message)
-    assert said.startswith(
+    shown_text = str(caught[0].message)
+    assert shown_text.startswith(
         "joint strut adds a dry friction of 10 N along the approach, which lowers e = 0.5 by up to 0.037"
     )
     assert 0.008 < left[0] - left[1] < 0.037
@@ -349,7 +349,7 @@ def test_a_leg_that_buckles_within_a_soft_blow_is_told(k, gives_way):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         contact = mr.contact_for(spec, "foot", "floor", k=k, restitution=0.5, friction=0, timestep=2e-5, **pose)
-    said = any("joints give way within a blow" in str(each.message) for each in caught)
+    shown_text = any("joints give way within a blow" in str(each.message) for each in caught)
     contact.apply(spec)
     data = mujoco.MjData(model := spec.compile())
     model.opt.gravity[:] = 0
@@ -364,4 +364,4 @@ def test_a_leg_that_buckles_within_a_soft_blow_is_told(k, gives_way):
         touched |= data.ncon > 0
     mujoco.mj_jacGeom(model, data, jacobian, None, foot)
     e = float(jacobian[2] @ data.qvel)
-    assert (said, abs(e - 0.5) > 0.03) == (gives_way, gives_way), e
+    assert (shown_text, abs(e - 0.5) > 0.03) == (gives_way, gives_way), e

@@ -193,7 +193,7 @@ HISTORY = ([0.0, 1.0], [0.0, 0.1])
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"displacement": ([0.0, 1.0], [0.0, np.nan])}, "values holds a value that is not finite"),
         ({"displacement": ([0.0, 1.0], [0.01, 0.02])}, "begins at 0.01 m; the valid start is 0 m"),
@@ -215,9 +215,9 @@ HISTORY = ([0.0, 1.0], [0.0, 0.1])
         ({"block": None, "at": None, "direction": (1.0, 0.0, 0.0)}, "all blocks of this masonry take 2 numbers"),
     ],
 )
-def test_what_is_wrong_is_named(changed, said):
+def test_what_is_wrong_is_named(changed, message):
     given = {"block": "panel", "at": (-B, H), "direction": 1, "displacement": HISTORY, "stiffness": 1e8} | changed
-    with pytest.raises((ValueError, TypeError), match=said):
+    with pytest.raises((ValueError, TypeError), match=message):
         mr.MasonryCase(panel(0.3), 1.0, effects=mr.Actuator(**given))
 
 
@@ -299,14 +299,14 @@ MAY = {
 @pytest.mark.parametrize(("guided", "in_space"), MAY)
 def test_a_start_that_the_guide_does_not_allow_is_refused(guided, in_space):
     masonry, jack = panel(0.5, in_space=in_space), held(guided, in_space)
-    said, free = MAY[guided, in_space]
+    message, free = MAY[guided, in_space]
     pose = mr.solve_explicit(mr.MasonryCase(masonry, 0.01)).pose[-1]
     for velocity in 0.2 * np.eye(6 if in_space else 3)[:, None]:
         if velocity[0, free].any():
             answer = mr.solve_explicit(mr.MasonryCase(masonry, 0.05, effects=jack, velocity=velocity), ledger=True)
             assert np.abs(answer.energy_residual).max() < 1e-3 * answer.ledger.largest
             continue
-        refused = rf"velocity of panel = \[.*: its actuator guides it, which lets it move along {said} alone"
+        refused = rf"velocity of panel = \[.*: its actuator guides it, which lets it move along {message} alone"
         with pytest.raises(ValueError, match=f"^{refused}"):
             mr.MasonryCase(masonry, 0.05, effects=jack, velocity=velocity)
         with pytest.raises(ValueError, match=f"^start, {refused}"):

@@ -169,10 +169,10 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
     solids = solids_about(LOWER, UPPER, inside=[(1, 5)])
     depth = {0: -0.5, 2: -0.1, 3: -0.02, 7: -0.3, 8: -0.01, 11: -0.001}
     out = {2: -0.4, 3: -0.9, 7: -0.5, 8: -0.6, 11: 0.0}
-    asked = []
+    requested = []
 
     def clip(_, face, blocks, work, count):
-        asked.append((face, blocks))
+        requested.append((face, blocks))
         if depth[face] is None:
             return count
         work.places[count].at, work.places[count].gap = 0.0, depth[face]
@@ -190,14 +190,14 @@ def test_the_face_along_which_blocks_are_least_deep(monkeypatch):
         (-0.6, (2, (0, 1), -0.1), [(2, (0, 1)), (7, (1, 0))]),
         (-0.7, (8, (1, 0), -0.01), [(2, (0, 1)), (7, (1, 0)), (8, (1, 0))]),
     ):
-        asked.clear()
+        requested.clear()
         assert finder.shallowest(solids, 0, (0, 1), least, work, 1) == expected
-        assert asked == [(0, (0, 1)), *more]
+        assert requested == [(0, (0, 1)), *more]
     depth[8] = depth[2]  # of two that are as deep the first one
     assert finder.shallowest(solids, 0, (0, 1), -0.7, work, 1) == (2, (0, 1), -0.1)
-    asked.clear()  # from a face of the other block
+    requested.clear()  # from a face of the other block
     assert finder.shallowest(solids, 7, (1, 0), -0.45, work, 1) == (2, (0, 1), -0.1)
-    assert asked == [(7, (1, 0)), (2, (0, 1))]
+    assert requested == [(7, (1, 0)), (2, (0, 1))]
     for deep, taken in ((-0.36, 0), (-0.34, 2)):
         depth[2] = deep
         assert finder.shallowest(solids, 0, (0, 1), -0.45, work, 1) == (taken, (0, 1), depth[taken])

@@ -84,16 +84,16 @@ def test_blocks_are_held_against_a_support_where_it_is():
 
 
 @pytest.mark.parametrize(
-    ("share", "left", "said"),
+    ("share", "left", "complaint"),
     [
         (0.03, 1.0, "joints 9 times as stiff keep blocks apart"),
         (0.03, 0.5, "this step leaves their contact 50% of its stiffness; timestep = 1e-05 s and joints 4.5 times as "),
         (0.03, 0.1, "this step leaves their contact 10% of its stiffness; timestep = 1e-05 s keeps blocks apart"),
     ],
 )
-def test_what_keeps_blocks_apart_names_the_step_where_that_is_the_cause(share, left, said):
+def test_what_keeps_blocks_apart_names_the_step_where_that_is_the_cause(share, left, complaint):
     """The overlap of a block that is stopped falls as the root of the stiffness, and is to fall to 1 %."""
-    assert overlap_remedy(share, left, 1e-5).startswith(said)
+    assert overlap_remedy(share, left, 1e-5).startswith(complaint)
 
 
 def lands(**options):
@@ -114,14 +114,14 @@ def test_a_light_block_that_sinks_into_another_is_told_by_the_step_or_the_joints
     """With the default step it keeps its stiffness, and with what each warning names the overlap is below 1 %."""
     free = lands(output_step=2e-4)
     assert free.stats["overlap"] < 0.01
-    with pytest.warns(UserWarning, match=r"heavy and light lie .*: this step leaves their contact") as told:
+    with pytest.warns(UserWarning, match=r"heavy and light lie .*: this step leaves their contact") as caught:
         coarse = lands(timestep=0.8 * free.stats["stable_timestep"], output_step=4e-4)
-    named = float(str(told[0].message).split("timestep = ")[1].split(" s")[0])
+    named = float(str(caught[0].message).split("timestep = ")[1].split(" s")[0])
     assert free.stats["timestep"] < named < coarse.stats["timestep"]
     assert coarse.stats["overlap"] > 0.01 > lands(timestep=named, output_step=2e-4).stats["overlap"]
     with pytest.warns(
         UserWarning, match=r"heavy and light .* s: joints [\d.]+ times as stiff keep blocks apart"
-    ) as told:
+    ) as caught:
         soft = lands(k_n=5e8, output_step=2e-4)
-    stiffer = float(str(told[0].message).split("joints ")[1].split(" times")[0])
+    stiffer = float(str(caught[0].message).split("joints ")[1].split(" times")[0])
     assert soft.stats["overlap"] > 0.01 > lands(k_n=1.02 * stiffer * 5e8, output_step=2e-4).stats["overlap"]

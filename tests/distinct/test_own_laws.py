@@ -285,10 +285,10 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("said", WRONG)
-def test_what_is_no_law_is_named(said):
-    methods = WRONG[said]
-    with pytest.raises((TypeError, ValueError), match=said) as error:
+@pytest.mark.parametrize("complaint", WRONG)
+def test_what_is_no_law_is_named(complaint):
+    methods = WRONG[complaint]
+    with pytest.raises((TypeError, ValueError), match=complaint) as error:
         mr.Dry(law=law_of(**methods)())
     assert "\n" not in str(error.value)
 

@@ -159,10 +159,10 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("said", WRONG)
-def test_what_is_no_law_of_a_link_is_named(said):
-    methods = WRONG[said]
-    with pytest.raises((TypeError, ValueError), match=said) as error:
+@pytest.mark.parametrize("message", WRONG)
+def test_what_is_no_law_of_a_link_is_named(message):
+    methods = WRONG[message]
+    with pytest.raises((TypeError, ValueError), match=message) as error:
         mr.Link(height=1.0, own=law_of(**methods))
     assert "\n" not in str(error.value)
 
@@ -189,14 +189,14 @@ def test_other_solvers_refuse_it_by_name():
         mr.Case(wall, 0.1, 0.2, effects=link, side_stop=False),
         mr.Contacts.from_damping(wall, k_base=5e8, xi_base=0.05),
     )
-    said = r"effects\[0\], Link: {} does not know it; take solve_explicit"
-    with pytest.raises(ValueError, match=said.format("MuJoCo")):
+    message = r"effects\[0\], Link: {} does not know it; take solve_explicit"
+    with pytest.raises(ValueError, match=message.format("MuJoCo")):
         mr.simulate(case, contacts)
-    with pytest.raises(ValueError, match=said.format("solve_compliant")):
+    with pytest.raises(ValueError, match=message.format("solve_compliant")):
         mr.solve_compliant(case, contacts)
-    with pytest.raises(ValueError, match=said.format("rocking theory")):
+    with pytest.raises(ValueError, match=message.format("rocking theory")):
         mr.solve_analytical(case, mr.Restitution.from_geometry(wall))
-    with pytest.raises(ValueError, match=said.format("push-over")):
+    with pytest.raises(ValueError, match=message.format("push-over")):
         mr.pushover(case)
     with pytest.raises(
         TypeError, match=r"effects\[0\] is a Link, whose force depends on the motion; limit analysis takes"

@@ -54,7 +54,7 @@ def test_a_table_turns_as_its_history_says():
 
 
 @pytest.mark.parametrize(
-    ("tilt", "said"),
+    ("tilt", "message"),
     [
         (([0.0, 1.0], [0.0, 15.0]), "= 15 rad is outside"),
         (([1.0, 2.0], [0.0, 0.1]), "t begins at 1 s"),
@@ -62,8 +62,8 @@ def test_a_table_turns_as_its_history_says():
         (0.2, "is not \\(t, values\\)"),
     ],
 )
-def test_what_is_wrong_with_a_table_is_named(tilt, said):
-    with pytest.raises((ValueError, TypeError), match=said):
+def test_what_is_wrong_with_a_table_is_named(tilt, message):
+    with pytest.raises((ValueError, TypeError), match=message):
         mr.MasonryCase(panel(0.3), 1.0, tilt=tilt)
     with pytest.raises(ValueError, match="tilt does not go with motion"):
         mr.MasonryCase(panel(0.3), 1.0, tilt=([0.0], [0.1]), motion=mr.GroundMotion([0.0, 1.0], 0.01))

@@ -47,8 +47,8 @@ def test_long_runs_speak_before_they_start(monkeypatch):
         raise StopIteration
 
     monkeypatch.setattr("mjrock.distinct.explicit.integrate", stop)
-    said = r"explicit steps would take some \S+ s: \S+ steps of \S+ s on \d+ contact lines\. The dashpots, "
-    with pytest.warns(UserWarning, match=said), pytest.raises(StopIteration):
+    complaint = r"explicit steps would take some \S+ s: \S+ steps of \S+ s on \d+ contact lines\. The dashpots, "
+    with pytest.warns(UserWarning, match=complaint), pytest.raises(StopIteration):
         mr.solve_explicit(mr.MasonryCase(SLOW, 1.0), output_step=0.1)
     with warnings.catch_warnings():  # what is long without a remedy has a bar, and is no warning
         warnings.simplefilter("error")
@@ -64,8 +64,8 @@ def test_ten_seconds_are_worth_saying_where_the_run_is_asked_for(monkeypatch):
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             mr.solve_explicit(case, timestep=1e-9)
-        said = [(re.split("[,:]", str(one.message))[0], one.filename) for one in caught]
-        assert said == [(text, __file__) for text in ("timestep = 1e-09 s", *named)]
+        complaint = [(re.split("[,:]", str(one.message))[0], one.filename) for one in caught]
+        assert complaint == [(text, __file__) for text in ("timestep = 1e-09 s", *named)]
 
 
 def test_the_estimate_is_near_what_it_takes(monkeypatch):

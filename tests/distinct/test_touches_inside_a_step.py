@@ -214,12 +214,12 @@ def unstable(monkeypatch, output_step=1e-3, beyond=1.8):
 
 
 def test_the_spacing_of_the_samples_plays_no_part_in_what_is_refused(monkeypatch):
-    said = []
+    complaint = []
     for spacing in (1e-3, 1e-2, 0.5):
         with monkeypatch.context() as patched, pytest.raises(RuntimeError, match="appeared from nowhere") as caught:
             unstable(patched, spacing)
-        said.append(str(caught.value))
-    assert len(set(said)) == 1
+        complaint.append(str(caught.value))
+    assert len(set(complaint)) == 1
 
 
 def test_the_error_names_a_shorter_step(monkeypatch):
@@ -245,13 +245,15 @@ SPUN = mr.MasonryCase(SOFT, 0.5, velocity=[(3.0, 0.0, 3.0)])
 
 
 def test_a_ledger_that_does_not_close_warns_and_names_a_step_that_closes_it():
-    with pytest.warns(UserWarning, match=r"the ledger does not close: .* J, \d\.\d% of its largest part.*take") as said:
+    with pytest.warns(
+        UserWarning, match=r"the ledger does not close: .* J, \d\.\d% of its largest part.*take"
+    ) as caught:
         run = mr.solve_explicit(SPUN, ledger=True, timestep=0.04, output_step=0.04)
     share = np.abs(run.energy_residual).max() / run.ledger.largest
     assert 0.01 < share < 0.1
-    assert f"{share:.1%}" in str(said[0].message)
-    assert said[0].filename == __file__  # it points at the call
-    named = float(re.search(r"timestep = (\S+) s", str(said[0].message))[1])
+    assert f"{share:.1%}" in str(caught[0].message)
+    assert caught[0].filename == __file__  # it points at the call
+    named = float(re.search(r"timestep = (\S+) s", str(caught[0].message))[1])
     assert named == pytest.approx(0.005 / share * run.stats["timestep"], rel=0.05)
     run = mr.solve_explicit(SPUN, timestep=named, ledger=True)  # a warning is an error here
     assert np.abs(run.energy_residual).max() < 0.01 * run.ledger.largest
@@ -277,6 +279,6 @@ def test_energy_that_ends_of_faces_put_in_has_an_account_and_warns(monkeypatch):
     monkeypatch.setattr(response, "RESIDUAL_WARNED_OF", -1.0)
     with pytest.warns(
         UserWarning, match=r"contacts at ends of faces put in \S+ J, -?\d+\.\d% of the energy there"
-    ) as said:
+    ) as caught:
         mr.solve_explicit(case, timestep=2e-5)
-    assert said[0].filename == __file__
+    assert caught[0].filename == __file__

@@ -54,9 +54,9 @@ def test_the_books_of_blocks_that_fall_close(timestep):
 def test_energy_that_comes_from_nowhere_after_blocks_fell_is_warned_of(ledger, monkeypatch):
     """A face that has no end holds what lies below it, in the books and not in the engine."""
     monkeypatch.setattr(stepping, "on_plates", lambda record, scene: record)
-    with pytest.warns(UserWarning, match="from nowhere by t = .* after blocks fell: faces have no end") as said:
+    with pytest.warns(UserWarning, match="from nowhere by t = .* after blocks fell: faces have no end") as caught:
         run = scattered(ledger=ledger)
-    assert len(said) == 1
+    assert len(caught) == 1
     if ledger:
         assert run.energy_residual.max() > 0.5 * run.ledger.largest
 

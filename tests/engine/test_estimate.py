@@ -24,13 +24,13 @@ def test_many_blocks_are_sent_to_explicit_steps_once_and_the_call_works():
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         mr.simulate(case)
-    (said,) = caught
-    assert said.category is UserWarning
-    assert said.filename == __file__
+    (complaint,) = caught
+    assert complaint.category is UserWarning
+    assert complaint.filename == __file__
     explicit, (least, most) = explicit_seconds(mr.masonry_scene(case)), fitted_seconds(mr.masonry_scene(case))
     for number in (explicit, least, most):
-        assert f"{number:.2g}" in str(said.message)
-    assert "take mr.solve_explicit(case)" in str(said.message)
+        assert f"{number:.2g}" in str(complaint.message)
+    assert "take mr.solve_explicit(case)" in str(complaint.message)
     assert mr.solve_explicit(case).outcome is not mr.Outcome.OVERTURNED
 
 

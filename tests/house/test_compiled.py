@@ -81,8 +81,8 @@ def test_without_numba_there_is_one_line_and_the_same_result(tmp_path):
     """As on a Python for which numba has no wheel: a module of its name that cannot be imported."""
     (tmp_path / "numba").mkdir()
     (tmp_path / "numba" / "__init__.py").write_text("raise ImportError('no wheel')")
-    said = run(tmp_path / "without.npz", home=tmp_path)
-    assert said.splitlines() == [
+    message = run(tmp_path / "without.npz", home=tmp_path)
+    assert message.splitlines() == [
         "mjrock: numba is not installed; "
         "the loops run as plain Python, thirty times slower, thousands in explicit steps"
     ]
@@ -161,8 +161,8 @@ def test_a_read_only_installation_works(tmp_path):
         (folder / "__pycache__").touch()
     (tmp_path / "home").touch()
     nowhere = {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": str(tmp_path / "home"), "PYTHONDONTWRITEBYTECODE": "1"}
-    said = run(tmp_path / "anew.npz", home=tmp_path / "site", program=THEORY, **nowhere)
-    assert said.splitlines() == [f"mjrock: {COMPILING}{ANEW}"]
+    message = run(tmp_path / "anew.npz", home=tmp_path / "site", program=THEORY, **nowhere)
+    assert message.splitlines() == [f"mjrock: {COMPILING}{ANEW}"]
     assert run(tmp_path / "plain.npz", home=tmp_path / "site", program=THEORY, MJROCK_INTERPRET="1", **nowhere) == ""
     run(tmp_path / "stored.npz", program=THEORY)
     same(tmp_path / "anew.npz", tmp_path / "stored.npz")

@@ -48,8 +48,8 @@ def faults(kind):
         if re.search(r"(as|those) of `", text):
             continue
         if (within.low, within.high) not in ranges or (f"[{within.unit or '-'}]" not in text and not within.whole):
-            said = f"{within.low:g} to {within.high:g} [{within.unit or '-'}]"
-            yield f"{kind.__qualname__}.{name}: {said} is not in {text!r}"
+            message = f"{within.low:g} to {within.high:g} [{within.unit or '-'}]"
+            yield f"{kind.__qualname__}.{name}: {message} is not in {text!r}"
 
 
 def test_docstrings_have_the_declared_ranges():
@@ -88,14 +88,14 @@ def test_docstrings_with_another_range_or_unit_are_found():
 def test_numbers_are_checked_and_kept_as_declared():
     wall = Wall(np.float32(20), 5, 3.0, None)
     assert [type(value) for value in vars(wall).values()] == [float, float, int, type(None)]
-    for wrong, said in (
+    for wrong, message in (
         ((20.1, 5, 3, None), "height of the wall = 20.1 m is outside the valid range 0 to 20 m"),
         ((math.nan, 5, 3, None), "height of the wall = nan m"),
         ((20, None, 3, None), "length of the wall = None is not a real number"),
         ((20, 5, 2.5, None), "floors of the wall = 2.5 is not a whole number"),
         ((20, 5, 3, 0.6), "thickness of the wall = 0.6 m"),
     ):
-        with pytest.raises((TypeError, ValueError), match=re.escape(said)):
+        with pytest.raises((TypeError, ValueError), match=re.escape(message)):
             Wall(*wrong)
 
 
@@ -109,11 +109,11 @@ def test_arguments_are_checked_and_converted_as_declared():
     assert [type(value) for value in volume(np.float32(20), count=3.0)] == [float, int]
     assert volume(5, None) == (5.0, None)
     assert volume.__doc__ == "A function of a test."
-    for call, said in (
+    for call, message in (
         (lambda: volume(-1), "height = -1 m is outside the valid range 0 to 20 m"),
         (lambda: volume(1, count=2.5), "count = 2.5 is not a whole number"),
         (lambda: volume(), "volume() missing 1 required positional argument: 'height'"),
         (lambda: volume(1, depth=2), "volume() got an unexpected keyword argument 'depth'"),
     ):
-        with pytest.raises((TypeError, ValueError), match=re.escape(said)):
+        with pytest.raises((TypeError, ValueError), match=re.escape(message)):
             call()

@@ -34,8 +34,8 @@ def test_an_example_gives_what_it_shows(name, names):
     text = inspect.getdoc(getattr(mr, name))
     example = doctest.DocTestParser().get_doctest(text, dict(names), name, None, 0)
     assert example.examples
-    told = StringIO()
+    printed = StringIO()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        failed = doctest.DocTestRunner(verbose=False).run(example, out=told.write).failed
-    assert not failed, told.getvalue()
+        failed = doctest.DocTestRunner(verbose=False).run(example, out=printed.write).failed
+    assert not failed, printed.getvalue()

@@ -76,7 +76,7 @@ def started(folder, program=WALL, interpret="1", *, at_home=False, **environment
     return subprocess.Popen([sys.executable, "-c", program], env=setting, cwd=folder, **piped)
 
 
-def said(folder, program=WALL, interpret="1", **environment):
+def message(folder, program=WALL, interpret="1", **environment):
     """What a program prints: on the first line its answer, whether numba is imported, which process compiles."""
     out, err = started(folder, program, interpret, **environment).communicate()
     assert err == "", err
@@ -131,10 +131,10 @@ def test_the_process_that_compiles_outlives_a_short_script_and_says_so(fresh):
     process = parent.stdout.readline().split()[-1]
     if process == "None":
         pytest.skip("one core: nothing compiles behind a run")
-    said = parent.communicate("")[1]
+    message = parent.communicate("")[1]
     try:
         assert is_alive(process)
-        assert said == (
+        assert message == (
             f"mjrock: process {process} goes on compiling for at most 120 s, at low priority; the next start takes "
             "what it stores. It can be ended without harm\n"
         )
@@ -150,12 +150,12 @@ def test_the_second_start_takes_compiled_loops(fresh):
     """Of a script that ends long before the compiler does. The bits are the same, and nothing is said any more."""
     counted = "print(sum(rocking_loop.stats.cache_hits.values()) if rocking_loop._loaded else 0)"
     first = started(fresh, THEORY + counted, at_home=True)
-    told, said = first.communicate("")
+    printed, message = first.communicate("")
     if machine.cores() == 1:
         pytest.skip("one core: nothing compiles behind a run")
-    assert told.split()[-1] == "0"
-    assert ended(said.split("process ")[1].split()[0])
-    assert started(fresh, THEORY + counted, at_home=True).communicate("") == (told.split()[0] + "\n1\n", "")
+    assert printed.split()[-1] == "0"
+    assert ended(message.split("process ")[1].split()[0])
+    assert started(fresh, THEORY + counted, at_home=True).communicate("") == (printed.split()[0] + "\n1\n", "")
 
 
 @linux
@@ -210,7 +210,7 @@ while "numba" not in sys.modules and time.monotonic() < until:
 assert (answer.theta == first).all()
 print(bool(rocking_loop.signatures), sum(rocking_loop.stats.cache_hits.values()))
 """
-    assert said(fresh, THEORY + waiting)[-2:] == ["True", "1"]
+    assert message(fresh, THEORY + waiting)[-2:] == ["True", "1"]
 
 
 @pytest.mark.slow

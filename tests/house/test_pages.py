@@ -143,13 +143,13 @@ def test_what_the_readme_names_is_what_a_script_prints():
     found = re.search(r"^(\d+) blocks fell, the first at ([\d.]+) s", facade, re.MULTILINE)
     assert (fallen, first) == (found[1], f"{float(found[2]):.1f}")
     theory, found = re.search(r"^ +1 \|.*?\| +(\S+) +(\S+) *\|", readme, re.MULTILINE).groups()
-    told = " ".join(readme.split())
-    assert f"{found} of the angular velocity is left after the first impact below, {theory} by theory" in told
+    output = " ".join(readme.split())
+    assert f"{found} of the angular velocity is left after the first impact below, {theory} by theory" in output
     page = (DOCS / "compared_with_tests.md").read_text(encoding="utf-8")
     walls = re.findall(r"^\| WS\.\d+\D.*?\| [\d.]+ \| ([\d.]+) / ([\d.]+) \(", page, re.MULTILINE)
     assert len(walls) == 4
     for bore in zip(*walls, strict=True):
-        assert "{}, {}, {} and {} kN".format(*bore) in told
+        assert "{}, {}, {} and {} kN".format(*bore) in output
     one_sided = (DOCS / "figures" / "peers.txt").read_text(encoding="utf-8").split("two-sided")[0]
     times = [
         float(row.split()[-1])
@@ -157,7 +157,7 @@ def test_what_the_readme_names_is_what_a_script_prints():
         if "mjrock" not in row and row.split()[-1:] != ["reached"] and row
     ]
     low, high = min(times), max(times)
-    assert f"in {low:.0f} to {high:.0f} times the time of mjrock" in told
+    assert f"in {low:.0f} to {high:.0f} times the time of mjrock" in output
     words = re.sub(r"```.*?```", "", readme, flags=re.DOTALL)
     assert re.findall(r"\d(?:\.\d+)? ?%|\d+ times", words) == ["1 %", f"{high:.0f} times"]
 

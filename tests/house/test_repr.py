@@ -63,20 +63,21 @@ def test_it_prints_in_a_line_with_units(shown, text):
 
 
 def test_what_a_wall_and_a_case_carry_is_named():
-    said = repr(RICH)
+    message = repr(RICH)
     for part in (
         "inset 0.02 m, 0.4 m thick at the top, 1 opening, 2 added masses",
         "side stop up to 3 m",
         "omega0 = 0.1 rad/s, motion 'a', vertical 'b', Tie, Load>",
     ):
-        assert part in said
+        assert part in message
 
 
 def test_a_comparison_and_a_store_say_what_they_hold(tmp_path):
     theory = mr.solve_analytical(CASE, E)
-    said = repr(mr.compare(theory, theory))
+    message = repr(mr.compare(theory, theory))
     assert (
-        said == "<Comparison of analytical with analytical: |e| of rebound 1 0.4422 for 0.4422, RMS of theta/alpha 0>"
+        message
+        == "<Comparison of analytical with analytical: |e| of rebound 1 0.4422 for 0.4422, RMS of theta/alpha 0>"
     )
     with mr.Store(tmp_path / "walls.sqlite", writing=True) as store:
         assert repr(store) == f"<Store {tmp_path / 'walls.sqlite'}>"

@@ -386,8 +386,8 @@ def test_help(capsys):
         with pytest.raises(SystemExit) as stop:
             main_of(name)(["--help"])
         printed = capsys.readouterr().out
-        said = all(part in printed for part in ("--out", "(default:")) and not re.search("None|False", printed)
-        if stop.value.code != 0 or not said:
+        message = all(part in printed for part in ("--out", "(default:")) and not re.search("None|False", printed)
+        if stop.value.code != 0 or not message:
             offenders.append(name)
     assert offenders == []
 

@@ -58,8 +58,8 @@ def found_of(request, *, swapped=False, length=1.0, mass=1.0, **how):
     """Restitution, depth, force, friction and creep found and promised, in metres and kilograms."""
     spec = model_of(length=length, mass=mass, **how)
     geoms = ("floor", "box") if swapped else ("box", "floor")
-    asked = in_units(request, length, mass) | {"restitution": 0.6, "friction": 0.5}
-    contact = contact_for(spec, *geoms, speed=SPEED * length, **asked)
+    requested = in_units(request, length, mass) | {"restitution": 0.6, "friction": 0.5}
+    contact = contact_for(spec, *geoms, speed=SPEED * length, **requested)
     contact.apply(spec)
     found = measure(spec, *geoms, speed=SPEED * length, duration=0.05)
     force = mass * length

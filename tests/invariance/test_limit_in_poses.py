@@ -64,5 +64,5 @@ def test_the_multiplier_in_a_pose_is_that_of_its_twins(seed):
 @pytest.mark.slow
 def test_the_multiplier_in_many_poses():
     found = [compared(seed) for seed in (*range(0, 200, 5), *range(LATER, LATER + 100, 5))]
-    assert [said for unlike, _ in found for said in unlike] == []
+    assert [message for unlike, _ in found for message in unlike] == []
     assert sum(tried for _, tried in found) > 10

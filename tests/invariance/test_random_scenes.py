@@ -39,10 +39,13 @@ PAGE = Path(__file__).parents[2] / "docs" / "validation.md"
 def broken(seed, names=None):
     """What is wrong with the scene of a seed under these invariances or all, in words."""
     row = judge(seed, names)
-    unlike = [f"{name}: {said}" for name, (verdict, said) in row.get("apart", {}).items() if verdict == "unexplained"]
+    unlike = [
+        f"{name}: {message}" for name, (verdict, message) in row.get("apart", {}).items() if verdict == "unexplained"
+    ]
     unnamed = [f"unnamed: {row['unnamed']}"] if "unnamed" in row else []
     return [
-        f"seed {seed}, {row['place']}, {row['kind']}: {said}" for said in (*unnamed, *row.get("wrong", ()), *unlike)
+        f"seed {seed}, {row['place']}, {row['kind']}: {message}"
+        for message in (*unnamed, *row.get("wrong", ()), *unlike)
     ]
 
 

@@ -296,7 +296,7 @@ def told_by(path, name, size=None, switches=()):
     script = (Path(__file__).parent / "in_the_page.js").read_text().replace("NAME", repr(name))
     page = path.read_text() + f'<script type="module">{script}</script>'
     frame = "" if size is None else '<iframe src="/page" width={} height={} style="border:0"></iframe>'.format(*size)
-    told, done = {}, threading.Event()
+    page_state, done = {}, threading.Event()
 
     class Answer(BaseHTTPRequestHandler):
         def do_GET(self):
@@ -307,7 +307,7 @@ def told_by(path, name, size=None, switches=()):
             self.wfile.write((text or "").encode())
 
         def do_POST(self):
-            told.update(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
+            page_state.update(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
             self.send_response(204)
             self.end_headers()
             done.set()
@@ -332,43 +332,48 @@ def told_by(path, name, size=None, switches=()):
         browser.wait()
         server.shutdown()
         server.server_close()
-    assert "error" not in told, told["error"]
-    return told
+    assert "error" not in page_state, page_state["error"]
+    return page_state
 
 
 @pytest.mark.slow
 @in_a_browser
 def test_a_browser_shows_the_blocks_where_they_are_and_its_controls_work(slid, tmp_path):
-    told = told_by(plotting.view(slid, tmp_path / "page.html"), "controls")
-    assert told["state"] == "drawn"
-    assert told["asked"] == []
-    assert told["frames"] > 0
-    t, *poses = told["later"]
+    page_state = told_by(plotting.view(slid, tmp_path / "page.html"), "controls")
+    assert page_state["state"] == "drawn"
+    assert page_state["asked"] == []
+    assert page_state["frames"] > 0
+    t, *poses = page_state["later"]
     assert t == 0.8
     poses, at = np.reshape(poses, (2, 8)), int(np.argmin(np.abs(slid.t - 0.8)))
     rest = slid.case.rests
     np.testing.assert_allclose(poses[:, [0, 2]] - rest, slid.pose[at, :, :2], atol=2e-3)  # between two samples
     np.testing.assert_allclose(2 * np.arcsin(poses[:, 5]), slid.pose[at, :, 2], atol=1e-2)
-    np.testing.assert_allclose(np.reshape(told["first"], (2, 8))[:, [0, 2]], rest, atol=1e-4)
+    np.testing.assert_allclose(np.reshape(page_state["first"], (2, 8))[:, [0, 2]], rest, atol=1e-4)
     times = run_of(tmp_path / "page.html")["t"]
-    assert (told["second"], told["again"], told["end"]) == (times[1], times[1], times[-1])
-    assert (told["fast"], told["plays"], told["stops"]) == (2, [True, "stop"], [False, "Play"])
-    assert told["slow"] == 0.1
-    assert told["turned"] > 0.1
-    assert told["reset"] == [0, 1, pytest.approx(0, abs=1e-6)]
-    assert told["card"].startswith(NASTY)
-    assert all(word in told["card"] for word in ("mass600 kg", "displacement", "turned by", "force with lower"))
-    assert re.search(r"displacement\d+(\.\d+)? mm", told["card"])
-    assert re.fullmatch(r"largest opening so far \d+(\.\d+)? mm", told["opened"])
-    assert "0.000 mm" in told["zero"]
-    assert "-0.000" not in told["zero"]
-    assert told["canvas"].startswith("2 blocks, 0 to 1 s")
-    assert told["axes"] == pytest.approx([1, 1, 1], abs=1e-4)
-    assert (told["picked"], told["hidden"], told["none"], told["chosen"]) == ("2", True, -1, "lower")
-    assert set(told["switches"]) == {"ground", "blocks", "ties", "forces"}
-    assert re.fullmatch(r"[125]0* k?N", told["scales"][0])
-    assert re.fullmatch(r"0?\.?[125]0* m", told["scales"][1])
-    assert told["unnamed"] == 0
+    assert (page_state["second"], page_state["again"], page_state["end"]) == (times[1], times[1], times[-1])
+    assert (page_state["fast"], page_state["plays"], page_state["stops"]) == (2, [True, "stop"], [False, "Play"])
+    assert page_state["slow"] == 0.1
+    assert page_state["turned"] > 0.1
+    assert page_state["reset"] == [0, 1, pytest.approx(0, abs=1e-6)]
+    assert page_state["card"].startswith(NASTY)
+    assert all(word in page_state["card"] for word in ("mass600 kg", "displacement", "turned by", "force with lower"))
+    assert re.search(r"displacement\d+(\.\d+)? mm", page_state["card"])
+    assert re.fullmatch(r"largest opening so far \d+(\.\d+)? mm", page_state["opened"])
+    assert "0.000 mm" in page_state["zero"]
+    assert "-0.000" not in page_state["zero"]
+    assert page_state["canvas"].startswith("2 blocks, 0 to 1 s")
+    assert page_state["axes"] == pytest.approx([1, 1, 1], abs=1e-4)
+    assert (page_state["picked"], page_state["hidden"], page_state["none"], page_state["chosen"]) == (
+        "2",
+        True,
+        -1,
+        "lower",
+    )
+    assert set(page_state["switches"]) == {"ground", "blocks", "ties", "forces"}
+    assert re.fullmatch(r"[125]0* k?N", page_state["scales"][0])
+    assert re.fullmatch(r"0?\.?[125]0* m", page_state["scales"][1])
+    assert page_state["unnamed"] == 0
 
 
 @pytest.mark.slow
@@ -376,9 +381,10 @@ def test_a_browser_shows_the_blocks_where_they_are_and_its_controls_work(slid, t
 def test_a_browser_draws_tints_edges_and_shadows(tmp_path):
     column = mr.Masonry.column(width=1.0, height=2.0, drums=2, k_n=1e9)
     answer = mr.solve_explicit(mr.MasonryCase(column, 0.1), forces=True)
-    told = told_by(plotting.view(answer, tmp_path / "page.html"), "colours")
+    page_state = told_by(plotting.view(answer, tmp_path / "page.html"), "colours")
     lower, upper, edge, shaded, lit, gone, through, ground = (
-        np.array(told[name], float) for name in ("lower", "upper", "edge", "shaded", "lit", "gone", "through", "ground")
+        np.array(page_state[name], float)
+        for name in ("lower", "upper", "edge", "shaded", "lit", "gone", "through", "ground")
     )
     for colour in (lower, upper):
         assert colour[0] > 1.5 * colour[2]  # brick
@@ -394,17 +400,17 @@ def test_a_browser_draws_tints_edges_and_shadows(tmp_path):
 @in_a_browser
 @pytest.mark.parametrize("size", [(390, 740), (1280, 700), (844, 390)], ids=["phone", "desktop", "phone on its side"])
 def test_all_blocks_are_in_the_picture_and_controls_are_large_enough(slid, tmp_path, size):
-    told = told_by(plotting.view(slid, tmp_path / "page.html"), "layout", size)
-    points, (left, top, right, bottom) = np.array(told["points"]), told["canvas"]
+    page_state = told_by(plotting.view(slid, tmp_path / "page.html"), "layout", size)
+    points, (left, top, right, bottom) = np.array(page_state["points"]), page_state["canvas"]
     assert points[:, 0].min() > left
     assert points[:, 0].max() < right
     assert points[:, 1].min() > top
     assert points[:, 1].max() < bottom
     assert np.ptp(points, axis=0).max() > 0.3 * min(right - left, bottom - top)
-    assert (told["footer"], told["wide"]) == (size[1], size[0])
-    assert told["slider"] > 0.9 * size[0]
-    assert min(told["heights"]) >= 36
-    assert told["canvas"][3] > 0.4 * size[1]
+    assert (page_state["footer"], page_state["wide"]) == (size[1], size[0])
+    assert page_state["slider"] > 0.9 * size[0]
+    assert min(page_state["heights"]) >= 36
+    assert page_state["canvas"][3] > 0.4 * size[1]
 
 
 @pytest.mark.slow
@@ -413,14 +419,14 @@ def test_a_frame_of_1000_blocks_takes_less_than_4_ms_of_script(wall, tmp_path):
     """A quarter of the time between two of 60 frames a second. The best of some hundreds, as the machine is shared."""
     path = plotting.view(wall, tmp_path / "page.html")
     assert path.stat().st_size < 3e6
-    told = told_by(path, "frames")
-    assert told["quarter"] < 4.0, told
+    page_state = told_by(path, "frames")
+    assert page_state["quarter"] < 4.0, page_state
 
 
 @pytest.mark.slow
 @in_a_browser
 def test_a_browser_that_cannot_draw_says_so(slid, tmp_path):
     path = plotting.view(slid, tmp_path / "page.html")
-    told = told_by(path, "trouble", switches=["--disable-3d-apis"])
-    assert told["state"] == "failed"
-    assert "needs a browser with WebGL 2" in told["text"]
+    page_state = told_by(path, "trouble", switches=["--disable-3d-apis"])
+    assert page_state["state"] == "failed"
+    assert "needs a browser with WebGL 2" in page_state["text"]

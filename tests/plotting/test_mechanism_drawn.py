@@ -64,20 +64,20 @@ def test_what_has_no_mechanism_has_no_picture():
 
 
 @pytest.mark.parametrize(
-    ("pose", "said"),
+    ("pose", "message"),
     [
         ([[0.1, 0.0, 0.0], [0.1, 0.0, 0.1]], "fixed blocks that have moved"),
         ([[0.1, 0.0]], r"shape \(1, 2\); \(1, 3\)"),
     ],
 )
-def test_a_pose_of_all_blocks_is_drawn_and_of_moved_supports_is_not(pose, said):
+def test_a_pose_of_all_blocks_is_drawn_and_of_moved_supports_is_not(pose, message):
     masonry = mr.Masonry.stack([mr.Block.from_size(0.6, 2.0)])
     drawn = [Figure().add_subplot() for _ in range(2)]
     for ax, given in zip(drawn, ([[0.1, 0.0, 0.1]], [[0.0, 0.0, 0.0], [0.1, 0.0, 0.1]]), strict=True):
         plotting.blocks(ax, masonry, given)
     shapes = [[path.vertices.tolist() for part in ax.collections for path in part.get_paths()] for ax in drawn]
     assert shapes[0] == shapes[1]
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         plotting.blocks(drawn[0], masonry, pose)
 
 

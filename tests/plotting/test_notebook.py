@@ -87,7 +87,7 @@ def test_an_answer_of_masonry_shows_its_blocks_where_they_are_at_the_end():
 
 def test_the_title_is_what_it_prints_as(monkeypatch, theory):
     titles = []
-    monkeypatch.setitem(notebook.PICTURES, mr.Response, lambda response, said: titles.append(said))
+    monkeypatch.setitem(notebook.PICTURES, mr.Response, lambda response, message: titles.append(message))
     assert notebook.png_of(theory) is None
     assert titles == [repr(theory)[1:-1]]
 

@@ -109,6 +109,6 @@ def test_a_block_has_its_colour_in_every_output(output, masonry, tmp_path):
 
 def test_a_body_that_touches_bodies_of_all_tints_has_one_of_theirs():
     last = len(TINTS)
-    told = distinct_tints(last + 1, [(i, j) for i in range(last + 1) for j in range(i)])
-    assert sorted(told[:last]) == list(range(last))
-    assert told[last] in range(last)
+    printed = distinct_tints(last + 1, [(i, j) for i in range(last + 1) for j in range(i)])
+    assert sorted(printed[:last]) == list(range(last))
+    assert printed[last] in range(last)

@@ -142,13 +142,13 @@ BREACHES = {
 }
 
 
-@pytest.mark.parametrize("said", BREACHES)
-def test_what_a_page_cannot_show_well_is_found(said):
-    drawn = BREACHES[said]()
+@pytest.mark.parametrize("message", BREACHES)
+def test_what_a_page_cannot_show_well_is_found(message):
+    drawn = BREACHES[message]()
     figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
     figure.draw_without_rendering()
     (fault,) = page_figures.faults(figure)
-    assert re.search(said.replace("'far'", "'(far)+'"), fault)
+    assert re.search(message.replace("'far'", "'(far)+'"), fault)
 
 
 def test_a_figure_of_its_own_has_colours_that_may_be_saved(tmp_path):

@@ -73,12 +73,12 @@ def test_the_sketch_says_where_a_tie_breaks():
     """The displacement of the centroid is that of the code check, whose wall has no masses added."""
     tie = mr.Tie(height=3.9, stiffness=2e6, strength=3e3, ultimate=0.02)
     case = mr.Case(mr.Block.from_size(0.6, 4.2), 0.0, 1.0, effects=(tie, mr.Tie(4.0, 1e6, strength=1e3)))
-    said = [text.get_text() for text in plotting.sketch(case).axes[0].texts]
-    (note,) = (text for text in said if text.startswith("tie_0"))
+    message = [text.get_text() for text in plotting.sketch(case).axes[0].texts]
+    (note,) = (text for text in message if text.startswith("tie_0"))
     assert "tie: z = 3.9 m" in plotting.sketch(replace(case, effects=(tie,))).axes[0].texts[-1].get_text()
     check = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=2.0, soil="B"))
     assert note.endswith(f"breaks where the centroid has moved by {1e3 * check.breaking['tie_0']:.0f} mm")
-    assert not any("breaks" in text for text in said if text.startswith("tie_1"))
+    assert not any("breaks" in text for text in message if text.startswith("tie_1"))
 
 
 def test_spectra_their_mean_and_their_target():
@@ -86,12 +86,12 @@ def test_spectra_their_mean_and_their_target():
     target, T = mr.code_spectrum("EC8 type 1", ag=2.0, soil="B"), np.geomspace(0.1, 2.0, 12)
     motions = [mr.scaled_to_spectrum(mr.GroundMotion.synthetic(3.0, 8.0, seed=i), T, target) for i in range(3)]
     ax = plotting.spectra(Figure().subplots(), motions, T, target)
-    *single, mean, asked = [line.get_ydata() for line in ax.lines]
+    *single, mean, requested = [line.get_ydata() for line in ax.lines]
     np.testing.assert_allclose(mean, np.mean(single, axis=0))
-    np.testing.assert_allclose(asked, target(T) / mr.GRAVITY)
-    assert np.exp(np.log(mean / asked).mean()) == pytest.approx(1.0, abs=0.1)
+    np.testing.assert_allclose(requested, target(T) / mr.GRAVITY)
+    assert np.exp(np.log(mean / requested).mean()) == pytest.approx(1.0, abs=0.1)
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["records", "mean of 3", "target"]
-    assert heights_of(ax.figure, ax, plotting.PALETTE[1])[1] == pytest.approx(asked.max(), rel=0.05)
+    assert heights_of(ax.figure, ax, plotting.PALETTE[1])[1] == pytest.approx(requested.max(), rel=0.05)
     records = mr.RecordSet(a=tuple(motions), b=(motions[1],))
     of_set = plotting.spectra(Figure().subplots(), records, T, target).lines  # without the vertical component of a
     np.testing.assert_allclose(of_set[-2].get_ydata(), np.mean([single[0], single[1], single[1]], axis=0))

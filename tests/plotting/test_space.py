@@ -293,8 +293,8 @@ def test_a_scale_bar_is_as_long_as_it_says_and_lies_across_the_line_of_sight():
     figure, _ = animation.scene(solids, [], None)
     ax = figure.axes[0]
     ends = np.transpose(ax.lines[0].get_data_3d())
-    (said,) = (text.get_text() for text in ax.texts)
-    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(float(said.split()[0]))
+    (message,) = (text.get_text() for text in ax.texts)
+    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(float(message.split()[0]))
     assert (ends[1] - ends[0]) @ solids.eye == pytest.approx(0.0, abs=1e-12)
     corners = solids.corners(0).reshape(-1, 3) @ solids.across.T
     assert (ends @ solids.across.T)[:, 1].max() < corners[:, 1].min()

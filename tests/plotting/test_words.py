@@ -244,5 +244,5 @@ def test_every_public_picture_is_tried():
 @pytest.mark.parametrize("name", PICTURES)
 def test_words_of_every_picture_are_free(name):
     """Every day `test_baselines` draws one picture of each kind."""
-    found = {seed: said for seed in range(INPUTS) if (said := label_of(name, seed))}
+    found = {seed: message for seed in range(INPUTS) if (message := label_of(name, seed))}
     assert found == {}

@@ -53,17 +53,17 @@ def obj_text(meshes):
 
 
 @pytest.mark.parametrize(
-    ("unit", "size", "said"),
+    ("unit", "size", "message"),
     [
         ("cm", 0.01, "cm, 0.28 m or in, 0.72 m"),
         ("in", 0.0254, "in, 0.28 m or cm, 0.11 m"),
         ("mm", 0.001, "mm, 0.28 m or cm, 2.8 m"),
     ],
 )
-def test_bricks_in_another_unit_are_doubted_and_read_in_theirs(unit, size, said):
+def test_bricks_in_another_unit_are_doubted_and_read_in_theirs(unit, size, message):
     """Of a brick of 0.25 x 0.12 x 0.06 m the diagonal, which is 0.284 m, is the size."""
     with pytest.warns(
-        mr.Implausible, match=rf"b. is .* m across; vertices are in m: are they in {said}\? A file takes"
+        mr.Implausible, match=rf"b. is .* m across; vertices are in m: are they in {message}\? A file takes"
     ):
         mr.Masonry.from_meshes(bricks(1 / size), ground=True)
     read = mr.Masonry.from_meshes(bricks(1 / size), ground=True, unit=unit)
@@ -87,10 +87,10 @@ def test_a_file_is_turned_until_the_axis_that_is_named_points_upwards(up):
 def test_a_wall_that_lies_on_its_face_is_doubted(up):
     """Also where the ground is in the file; nobody doubts a caller who says that z points upwards."""
     pile = bricks(up=up, size=(0.25, 0.12, 0.1))
-    said = f"z points upwards: does {up} in this file. up='{up}' turns it, and up='z' keeps z"
-    with pytest.warns(mr.Implausible, match=f"8 of 8 blocks lie on the ground, side by side along {up}; {said}"):
+    message = f"z points upwards: does {up} in this file. up='{up}' turns it, and up='z' keeps z"
+    with pytest.warns(mr.Implausible, match=f"8 of 8 blocks lie on the ground, side by side along {up}; {message}"):
         mr.Masonry.from_meshes(pile, ground=True)
-    with pytest.warns(mr.Implausible, match=f"lie along {up} from the fixed ones and not above them; {said}"):
+    with pytest.warns(mr.Implausible, match=f"lie along {up} from the fixed ones and not above them; {message}"):
         mr.Masonry.from_meshes(pile, ["b0"])
     with warnings.catch_warnings():
         warnings.simplefilter("error")

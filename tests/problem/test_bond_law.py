@@ -163,8 +163,8 @@ def test_crushing_that_a_spring_would_outdo_is_refused_with_the_valid_ranges(har
     column = {"sides": 4, "k_s": 1e9, "points": 3}
     with pytest.raises(ValueError, match=r"range of k_n is .* that of the crushing_energy") as refused:
         mr.Masonry.column(0.5, 2.0, 2, k_n=2.5e9, bond=bond, **column)
-    said = [float(word) for word in str(refused.value).split() if "e+" in word]
-    assert said == pytest.approx([2.5e9, 1.01 * steepest, 1.01 * bond.crushing_energy_on(2.5e9)], rel=0.005)
+    complaint = [float(word) for word in str(refused.value).split() if "e+" in word]
+    assert complaint == pytest.approx([2.5e9, 1.01 * steepest, 1.01 * bond.crushing_energy_on(2.5e9)], rel=0.005)
     assert len(mr.Masonry.column(0.5, 2.0, 2, k_n=1.001 * steepest, bond=bond, **column).bonds) == 2
     enough = replace(bond, crushing_energy=1.001 * bond.crushing_energy_on(2.5e9))
     assert mr.Masonry.column(0.5, 2.0, 2, k_n=2.5e9, bond=enough, **column).bonds[0] == enough

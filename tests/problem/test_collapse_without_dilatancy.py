@@ -296,14 +296,14 @@ def test_a_state_that_does_not_hold_is_none():
 )
 def test_forces_and_mechanism_take_turns_as_long_as_they_share_less_power(powers, turns, met):
     """A search is given up when two turns have gained nothing, from the fourth one on, or after the most turns."""
-    asked = []
+    requested = []
 
     def forces(rates, price):
-        asked.append(price)
-        return SimpleNamespace(status=0, x=np.array([powers[len(asked) - 1], 7.0]))
+        requested.append(price)
+        return SimpleNamespace(status=0, x=np.array([powers[len(requested) - 1], 7.0]))
 
-    programme = SimpleNamespace(mechanism=lambda x: (np.ones(1), np.array([len(asked)])), forces=forces)
+    programme = SimpleNamespace(mechanism=lambda x: (np.ones(1), np.array([len(requested)])), forces=forces)
     moving = _mechanism_near(programme, np.ones(1))
-    assert len(asked) == turns
+    assert len(requested) == turns
     assert (moving is not None) is met
     assert moving is None or moving[1] == turns - 1

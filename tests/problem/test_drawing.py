@@ -12,7 +12,7 @@ FACADE = mr.Masonry.facade(1.6, 0.8, 0.8, (0.4, 0.2), k_n=1e9)
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "message"),
     [
         (
             lambda scale: mr.Polyhedron.box((scale * 0.4, scale * 0.2, scale * 0.2), (0, 0, scale * 0.1)),
@@ -24,14 +24,14 @@ FACADE = mr.Masonry.facade(1.6, 0.8, 0.8, (0.4, 0.2), k_n=1e9)
         ),
     ],
 )
-def test_blocks_in_millimetres_are_doubted(make, said):
+def test_blocks_in_millimetres_are_doubted(make, message):
     of = (
         mr.Polyhedron.box((1e3, 1e3, 1e2), (0, 0, -50.0), fixed=True)
         if isinstance(make(1.0), mr.Polyhedron)
         else mr.Polygon([(-1e3, -1), (1e3, -1), (1e3, 0), (-1e3, 0)], fixed=True)
     )
     mr.Masonry([of, make(1.0)])
-    with pytest.warns(mr.Implausible, match=f"{said}.*vertices are in m: are they in mm"):
+    with pytest.warns(mr.Implausible, match=f"{message}.*vertices are in m: are they in mm"):
         mr.Masonry([of, make(1000.0)])
 
 
@@ -86,9 +86,9 @@ def test_open_joints_are_refused_with_the_gap_that_joins_them(gap, in_space):
         blocks = [mr.Polyhedron.prism(block) for block in blocks]
     with pytest.raises(ValueError, match=rf"within the tolerance of 1e-05 m; .* there are {gap:g} m; gap") as refused:
         mr.Masonry(blocks)
-    said = re.search(r"gap = (\S+) m joins all of them: it finds 5 joints$", str(refused.value))
-    assert gap <= float(said[1]) < 1.2 * gap
-    assert len(mr.Masonry(blocks, gap=float(said[1])).joints) == len(mr.Masonry(blocks, gap=gap).joints) == 5
+    message = re.search(r"gap = (\S+) m joins all of them: it finds 5 joints$", str(refused.value))
+    assert gap <= float(message[1]) < 1.2 * gap
+    assert len(mr.Masonry(blocks, gap=float(message[1])).joints) == len(mr.Masonry(blocks, gap=gap).joints) == 5
 
 
 def test_blocks_that_no_gap_joins_are_refused_with_their_distance():
@@ -131,11 +131,11 @@ def cards(in_space):
 
 @pytest.mark.parametrize("in_space", [False, True])
 def test_blocks_that_touch_along_a_line_are_refused_by_that_name(in_space):
-    said = "ground and left touch along a line"
-    with pytest.raises(ValueError, match=f"no two of them touch .*; {said}.*; a joint takes faces: cut the edge"):
+    message = "ground and left touch along a line"
+    with pytest.raises(ValueError, match=f"no two of them touch .*; {message}.*; a joint takes faces: cut the edge"):
         mr.Masonry(cards(in_space)[:2])
     post = mr.Polygon([(-2, 0), (-1.5, 0), (-1.5, 1), (-2, 1)], name="post")
-    with pytest.warns(mr.Implausible, match=f"without a joint {said}"):
+    with pytest.warns(mr.Implausible, match=f"without a joint {message}"):
         mr.Masonry([*cards(in_space)[:2], mr.Polyhedron.prism(post) if in_space else post])
 
 

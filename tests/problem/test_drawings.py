@@ -269,13 +269,13 @@ def test_outlines_that_are_not_convex_are_cut_or_filled(tmp_path):
     assert [block.fixed for block in filled.blocks] == [True, False]
 
 
-@pytest.mark.parametrize(("unit", "said"), [(units.IN, "0.0254 m"), (units.MM, "0.001 m")])
-def test_a_header_that_states_another_unit_than_the_drawing_has_is_named(tmp_path, unit, said):
+@pytest.mark.parametrize(("unit", "message"), [(units.IN, "0.0254 m"), (units.MM, "0.001 m")])
+def test_a_header_that_states_another_unit_than_the_drawing_has_is_named(tmp_path, unit, message):
     """Bricks that are drawn in mm and in m under the default of a template."""
     high = 250.0 if unit == units.IN else 0.4
     outlines = [("brick", box(0, 2 * high, i * high, (i + 1) * high)) for i in range(5)]
     path = drawing(tmp_path / "a.dxf", *outlines, unit=unit)
-    with pytest.warns(UserWarning, match=f"a.dxf: its header says that its unit is {said}, which .*; unit= takes"):
+    with pytest.warns(UserWarning, match=f"a.dxf: its header says that its unit is {message}, which .*; unit= takes"):
         mr.Masonry.from_dxf(path, ground=True)
 
 

@@ -62,16 +62,16 @@ def test_the_usual_joint_is_the_dry_one(build):
 
 def test_a_function_of_the_joint_gives_what_it_is(build):
     """It gives the same table as functions for each property, and is asked once of each joint."""
-    stiff, bonded, asked = mr.Dry(4e9, 0.5, 0.2, 2e9, 50.0, 3), mr.Mortar(DRY, BOND), []
+    stiff, bonded, requested = mr.Dry(4e9, 0.5, 0.2, 2e9, 50.0, 3), mr.Mortar(DRY, BOND), []
 
     def kind(joint):
-        asked.append(joint)
+        requested.append(joint)
         return bonded if joint.name.startswith(("ground|", "base|")) else stiff
 
     masonry = build(joints=kind)
     table, joints = masonry.table, masonry.joints
-    assert len(asked) == len(set(asked))
-    assert set(joints) <= set(asked)
+    assert len(requested) == len(set(requested))
+    assert set(joints) <= set(requested)
     wanted = [kind(joint).properties for joint in joints]
     assert table.bonds == tuple(each["bond"] for each in wanted)
     for name in ("k_n", "friction", "xi", "k_s", "frequency"):
@@ -226,8 +226,8 @@ WRONG = {6: "frction", 7: "friction", 8: "joints", 9: "kn", 10: "bond", 11: "fri
 def test_a_type_checker_refuses_a_wrong_keyword(tmp_path):
     (tmp_path / "typed.py").write_text(TYPED)
     command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "pyproject.toml", tmp_path / "typed.py"]
-    said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True).stdout.splitlines()
-    errors = {int(line.split(":")[1]): line for line in said if "typed.py:" in line and ": error:" in line}
-    assert sorted(errors) == sorted(WRONG), said
+    message = subprocess.run(command, cwd=ROOT, capture_output=True, text=True).stdout.splitlines()
+    errors = {int(line.split(":")[1]): line for line in message if "typed.py:" in line and ": error:" in line}
+    assert sorted(errors) == sorted(WRONG), message
     for number, name in WRONG.items():
         assert f'"{name}"' in errors[number], errors[number]

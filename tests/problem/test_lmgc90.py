@@ -71,16 +71,16 @@ def test_what_is_driven_is_fixed_and_named(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "message"),
     [
         ("DOF.INI", "no DOF.INI lies beside it, which states how each body is turned; all are taken as not turned"),
         ("DRV_DOF.DAT", "no DRV_DOF.DAT lies beside it, which states which bodies are held; fixed= takes its place"),
         ("BULK_BEHAV.DAT", "no BULK_BEHAV.DAT lies beside it, which states the density of each material; density="),
     ],
 )
-def test_a_file_that_is_missing_is_named(tmp_path, name, said):
+def test_a_file_that_is_missing_is_named(tmp_path, name, message):
     (datbox(tmp_path, turns=np.eye(3)) / name).unlink()
-    with pytest.warns(UserWarning, match=said):
+    with pytest.warns(UserWarning, match=message):
         masonry = mr.Masonry.from_lmgc90(tmp_path, fixed=["body_1"])
     assert len(masonry.joints) == 2
 
@@ -94,7 +94,7 @@ def test_other_shapes_are_left_out_and_named(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("RBDY3      2", "RBDY2      2", "body 2 is of the kind RBDY2; bodies in space of the kind RBDY3 are read"),
         ("nb_vertex=      8", "nb_vertex=      9", r"body 1 has 8 vertices and 12 faces .* it states 9 and 12"),
@@ -109,10 +109,10 @@ def test_other_shapes_are_left_out_and_named(tmp_path):
     ],
 )
 @pytest.mark.filterwarnings("ignore:.*left out are")
-def test_what_is_refused(tmp_path, old, new, said):
+def test_what_is_refused(tmp_path, old, new, message):
     path = datbox(tmp_path) / "BODIES.DAT"
     path.write_text(path.read_text().replace(old, new))
-    with pytest.raises(ValueError, match=rf"path = .*: {said}"):
+    with pytest.raises(ValueError, match=rf"path = .*: {message}"):
         mr.Masonry.from_lmgc90(tmp_path)
 
 

@@ -102,10 +102,10 @@ def test_a_drawing_names_the_gap_and_what_a_tolerance_loses(tmp_path):
     with pytest.raises(ValueError, match=r"gap = 0\.01\d* m joins all of them: it finds 42 joints"):
         mr.Masonry.from_dxf(path, ground=True)
     assert heads(mr.Masonry.from_dxf(path, ground=True, gap=MORTAR)) == 18
-    said = (
+    complaint = (
         r"18 pairs of blocks have no joint .* no wider than 10 times the tolerance of 0\.011 m; gap = 0\.011 m in its"
     )
-    with pytest.warns(mr.Implausible, match=said):
+    with pytest.warns(mr.Implausible, match=complaint):
         assert heads(mr.Masonry.from_dxf(path, ground=True, tolerance=0.011)) == 0
 
 
@@ -129,10 +129,10 @@ def test_an_outline_that_is_drawn_twice_is_read_once(tmp_path):
 def test_small_blocks_are_as_odd_as_large_ones(tmp_path):
     """A drawing in m under the header of a template in inches: bricks of 6.4 x 1.7 mm."""
     path = drawn(tmp_path / "a.dxf", 0.0, unit=1)
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         mr.Masonry.from_dxf(path, ground=True)
-    texts = " ".join(str(each.message) for each in said)
+    texts = " ".join(str(each.message) for each in caught)
     assert "0.006561 m across: is the unit too small? A file takes unit='m'" in texts
     assert (
         "its header says that its unit is 0.0254 m, which a template may have left there; unit= takes another" in texts

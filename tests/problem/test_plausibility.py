@@ -281,12 +281,12 @@ def plausible(rng):
         effects.append(mr.FrictionDamper(held, rng.uniform(2, 50) * 1e6, rng.uniform(0.005, 0.1) * wall.weight))
     share = rng.choice([1.0, rng.uniform(0.75, 0.95)])
     stop = True if share == 1 else mr.SideStop(share * height)
-    asked = {"side_stop": stop, "effects": tuple(effects)}
+    requested = {"side_stop": stop, "effects": tuple(effects)}
     if rng.random() < 0.3:
-        return mr.Case(wall, rng.uniform(0.1, 0.8) * wall.alpha, rng.uniform(1, 5), **asked), stop
+        return mr.Case(wall, rng.uniform(0.1, 0.8) * wall.alpha, rng.uniform(1, 5), **requested), stop
     duration = rng.uniform(5, 30)
     motion = mr.GroundMotion.synthetic(9.81 * rng.uniform(0.1, 0.8), duration, seed=int(rng.integers(1000)), dt=0.02)
-    return mr.Case(wall, 0.0, duration * rng.uniform(0.9, 1.5), motion=motion, **asked), stop
+    return mr.Case(wall, 0.0, duration * rng.uniform(0.9, 1.5), motion=motion, **requested), stop
 
 
 @pytest.mark.slow
@@ -301,24 +301,24 @@ def test_two_thousand_plausible_cases_raise_no_false_alarm():
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             try:
-                asked, stop = plausible(rng)
-                e = mr.Restitution.from_geometry(asked.wall, stop_top=None if stop is True else stop.top)
-                mr.Analysis(asked, "analytical", e=e)
+                requested, stop = plausible(rng)
+                e = mr.Restitution.from_geometry(requested.wall, stop_top=None if stop is True else stop.top)
+                mr.Analysis(requested, "analytical", e=e)
             except ValueError:
                 continue  # effects that overturn the wall as it stands
         made += 1
-        said = [str(one.message) for one in caught if issubclass(one.category, mr.Implausible)]
-        alarms += [text for text in said if not text.startswith("the highest tie holds at ")]
-        low += [asked for text in said if text.startswith("the highest tie holds at ")]
+        complaint = [str(one.message) for one in caught if issubclass(one.category, mr.Implausible)]
+        alarms += [text for text in complaint if not text.startswith("the highest tie holds at ")]
+        low += [requested for text in complaint if text.startswith("the highest tie holds at ")]
     print(f"{len(alarms)} alarms in {made} cases, and {len(low)} whose tie is too low")
-    assert all(asked.each(mr.Tie)[0].height < 1.2 * asked.wall.h for asked in low)
+    assert all(requested.each(mr.Tie)[0].height < 1.2 * requested.wall.h for requested in low)
     assert len(alarms) < 0.005 * made, alarms[:5]
 
 
-@pytest.mark.parametrize(("kept", "said"), [(0.05, ">99%"), (0.5, "80%"), (0.0, "100%")])
-def test_all_of_a_record_is_only_what_is_all_of_it(kept, said):
+@pytest.mark.parametrize(("kept", "complaint"), [(0.05, ">99%"), (0.5, "80%"), (0.0, "100%")])
+def test_all_of_a_record_is_only_what_is_all_of_it(kept, complaint):
     """Accelerations of 1 and 2 with the kept sample: the share of the sum of their squares that is left out."""
     accel = np.zeros(200)
     accel[10], accel[150] = kept, 1.0
-    with pytest.warns(mr.Implausible, match=f"leaves out {said} of its Arias"):
+    with pytest.warns(mr.Implausible, match=f"leaves out {complaint} of its Arias"):
         mr.Case(WALL, 0.01, 1.0, motion=mr.GroundMotion(accel, 0.01))

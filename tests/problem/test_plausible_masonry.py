@@ -93,9 +93,9 @@ def test_misuse_is_doubted_once(misuse):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         make()
-    said = [one for one in caught if issubclass(one.category, mr.Implausible)]
-    assert len(said) == 1
-    assert Path(mr.__file__).parent not in Path(said[0].filename).parents  # it points at the call
+    complaint = [one for one in caught if issubclass(one.category, mr.Implausible)]
+    assert len(complaint) == 1
+    assert Path(mr.__file__).parent not in Path(complaint[0].filename).parents  # it points at the call
     with pytest.warns(mr.Implausible, match=doubt):
         make()
 
@@ -183,15 +183,15 @@ def test_plausible_masonry_raises_hardly_an_alarm(make, count):
 @pytest.mark.parametrize(("name", "values"), [("friction", 0.5), ("k_n", 1e9), ("xi", 0.05), ("k_s", 1e9)])
 def test_a_function_of_the_joint_is_asked_once(name, values):
     """One with a state would otherwise be checked at one value and used at another."""
-    asked = []
+    requested = []
 
     def of_joint(joint):
-        asked.append(joint.name)
-        return values if len(asked) <= 3 else -1.0
+        requested.append(joint.name)
+        return values if len(requested) <= 3 else -1.0
 
     masonry = mr.Masonry(STACK.blocks, **{name: of_joint})
     mr.solve_explicit(mr.MasonryCase(masonry, 1e-3))
-    assert asked == [joint.name for joint in masonry.joints]
+    assert requested == [joint.name for joint in masonry.joints]
     assert getattr(masonry.table, name).tolist() == 3 * [values]
 
 

@@ -86,9 +86,9 @@ NO_UNITS = (
 def test_a_unit_that_is_not_g(tmp_path):
     end = "NPTS= 6, DT= .01 SEC\n" + NUMBERS
     texts = [AT2.replace("ACCELERATION TIME SERIES IN UNITS OF G", line) + end for line in NO_UNITS]
-    said = [re.escape(f"a.at2: line 3 is {line!r}") for line in NO_UNITS]
+    message = [re.escape(f"a.at2: line 3 is {line!r}") for line in NO_UNITS]
     kind = "not an AT2 file, whose line 3 is ACCELERATION TIME SERIES IN UNITS"
-    assert not_named(tmp_path, "at2", texts, said) == not_named(tmp_path, "at2", texts, kind) == []
+    assert not_named(tmp_path, "at2", texts, message) == not_named(tmp_path, "at2", texts, kind) == []
 
 
 @pytest.mark.parametrize(
@@ -110,8 +110,8 @@ NO_HEADERS = (
 
 def test_a_header_with_something_left_over(tmp_path):
     texts = [f"{AT2}{line}\n{NUMBERS}" for line in NO_HEADERS]
-    said, kind = [re.escape(ascii(line)) for line in NO_HEADERS], "line 4 states no NPTS and DT as in NPTS= 4000"
-    assert not_named(tmp_path, "at2", texts, said) == not_named(tmp_path, "at2", texts, kind) == []
+    message, kind = [re.escape(ascii(line)) for line in NO_HEADERS], "line 4 states no NPTS and DT as in NPTS= 4000"
+    assert not_named(tmp_path, "at2", texts, message) == not_named(tmp_path, "at2", texts, kind) == []
 
 
 def test_a_sac_header_with_something_left_over(tmp_path):
@@ -220,14 +220,14 @@ def test_any_damage_is_read_or_named(tmp_path, ending, count):
             k = int(rng.integers(len(content) + 1))
             content = content[:k] + rng.bytes(3) + content[k:]
         written(path, content)
-        motion, said = None, ""
+        motion, message = None, ""
         try:
             motion = READ[ending](path)
         except ValueError as error:
-            said = str(error)
+            message = str(error)
         if motion is None:
-            assert said.startswith(f"{path}: "), content
-            assert said.isprintable(), content
+            assert message.startswith(f"{path}: "), content
+            assert message.isprintable(), content
             refused += 1
         else:
             assert np.isfinite(motion.accel).all()

@@ -99,14 +99,14 @@ def test_three_channels_of_unam(tmp_path):
     for motion, factor in zip(motions, (-1, 1, 0.5), strict=True):
         np.testing.assert_allclose(motion.accel, factor * np.array(SAMPLES), atol=1e-12)
     assert len(mr.records_in(tmp_path).horizontal) == 2
-    for text, said in (
+    for text, message in (
         (three + rows + rows[:37], "7 samples of 3 channels; line 10 states 6, 6, 6"),
         (three + rows.replace(rows[:12], "", 1), "line 16 has 2 columns for 3 channels"),
         (three.replace("Gal (cm/s/s)", "cm/s") + rows, "line 12 is 'units:  cm/s': these are velocities"),
         (three.replace("Gal (cm/s/s)", "cuentas") + rows, "line 12 names no unit of accelerations: 'cuentas'"),
         (three.replace("CLAVE DE LA", "SITIO") + rows, "the header has no CLAVE DE LA ESTACION"),
     ):
-        with pytest.raises(ValueError, match=rf"b\.031: {said}"):
+        with pytest.raises(ValueError, match=rf"b\.031: {message}"):
             mr.GroundMotion.from_file(written(tmp_path / "b.031", text), "V")
 
 

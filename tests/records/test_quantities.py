@@ -36,13 +36,15 @@ ACCELERATIONS = (
 def test_what_a_header_names_is_refused_whatever_unit_is_given(header, tmp_path):
     rows = "".join(f"{t:.2f};{a:.5f}\n" for t, a in zip(T, A, strict=True))
     path = written(tmp_path / "a.txt", f"{header}\n{rows}")
-    said = rf"a\.txt: (line \d|the name of the column) is '.*': these are {HEADERS[header]}, whatever unit is given; a"
-    said += " record of accelerations is needed$"
+    message = (
+        rf"a\.txt: (line \d|the name of the column) is '.*': these are {HEADERS[header]}, whatever unit is given; a"
+    )
+    message += " record of accelerations is needed$"
     for unit in (None, "m/s2", "cm/s2", "g", 0.5):
         for read in (mr.GroundMotion.from_csv, mr.components_in):
-            with pytest.raises(ValueError, match=said):
+            with pytest.raises(ValueError, match=message):
                 read(path, unit)
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=message):
             mr.GroundMotion.from_file(path, unit=unit)
 
 
@@ -57,15 +59,15 @@ def test_a_column_is_what_its_name_says(tmp_path):
     rows = "".join(f"{t:.2f};{a:.5f};{2 * a:.5f};{3 * a:.5f}\n" for t, a in zip(T, A, strict=True))
     path = written(tmp_path / "a.txt", f"Displacement gauge 7\nt (s);acc;vel (m/s);disp (m)\n{rows}")
     np.testing.assert_allclose(mr.GroundMotion.from_csv(path, "m/s2", columns=("t", "acc")).accel, A, atol=5e-6)
-    for column, said in (("vel", "velocities"), (3, "displacements")):
-        with pytest.raises(ValueError, match=rf"the name of the column is '.*': these are {said}"):
+    for column, message in (("vel", "velocities"), (3, "displacements")):
+        with pytest.raises(ValueError, match=rf"the name of the column is '.*': these are {message}"):
             mr.GroundMotion.from_csv(path, "m/s2", columns=(0, column))
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=message):
             mr.components_in(path, "m/s2", columns=(0, 1, column))
 
 
-@pytest.mark.parametrize(("text", "said"), [(VT2, "velocities"), (DT2, "displacements")])
-def test_the_files_beside_an_at2(text, said, tmp_path):
+@pytest.mark.parametrize(("text", "message"), [(VT2, "velocities"), (DT2, "displacements")])
+def test_the_files_beside_an_at2(text, message, tmp_path):
     path = written(tmp_path / "a.VT2", text)
     for read in (
         mr.GroundMotion.from_file,
@@ -73,7 +75,7 @@ def test_the_files_beside_an_at2(text, said, tmp_path):
         lambda path: mr.GroundMotion.from_csv(path, "g", dt=0.01, columns="rows"),
         lambda path: mr.components_in(path, 1e-2),
     ):
-        with pytest.raises(ValueError, match=rf"a\.VT2: line 3 is '.*': these are {said}, whatever unit is given"):
+        with pytest.raises(ValueError, match=rf"a\.VT2: line 3 is '.*': these are {message}, whatever unit is given"):
             read(path)
     with pytest.raises(ValueError, match=r"line 3 is '(VELOCITY|DISPLACEMENT) .*': not an AT2 file"):
         mr.GroundMotion.from_at2(path)

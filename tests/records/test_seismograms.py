@@ -24,8 +24,8 @@ def obspy():
 
 
 def stream(obspy, *channels, **header):
-    told = {"delta": 0.01, "network": "XX", "station": "MADE", **header}
-    return obspy.Stream([obspy.Trace(COUNTS.copy(), {**told, "channel": channel}) for channel in channels])
+    printed = {"delta": 0.01, "network": "XX", "station": "MADE", **header}
+    return obspy.Stream([obspy.Trace(COUNTS.copy(), {**printed, "channel": channel}) for channel in channels])
 
 
 @pytest.mark.parametrize("kind", ["SAC", "MSEED", "SLIST", "GSE2"])
@@ -84,15 +84,17 @@ def test_other_channels_are_read_without_a_word(channel, tmp_path, obspy):
     assert mr.GroundMotion.from_file(path, unit=1e-3).peak == pytest.approx(0.5)
 
 
-@pytest.mark.parametrize(("idep", "said"), [(6, "displacements"), (7, "velocities"), (8, None), (5, "the channel HHE")])
-def test_the_quantity_of_a_sac_file(idep, said, tmp_path, obspy):
+@pytest.mark.parametrize(
+    ("idep", "message"), [(6, "displacements"), (7, "velocities"), (8, None), (5, "the channel HHE")]
+)
+def test_the_quantity_of_a_sac_file(idep, message, tmp_path, obspy):
     """Its header says more than its channel."""
     path, (trace,) = tmp_path / "a.sac", stream(obspy, "HHE")
     trace.stats.sac = {"idep": idep}
     trace.write(str(path), "SAC")
-    if said is None:
+    if message is None:
         assert mr.GroundMotion.from_file(path, unit=1e-3).peak == pytest.approx(0.5)
         return
     for unit in (1e-3, "mm/s2") if idep != 5 else (1e-3,):
-        with pytest.raises(ValueError, match=rf"a\.sac: .*{said}"):
+        with pytest.raises(ValueError, match=rf"a\.sac: .*{message}"):
             mr.GroundMotion.from_file(path, unit=unit)

@@ -87,9 +87,9 @@ def test_a_header_in_any_letters(encoding, tmp_path):
 def test_a_unit_that_the_header_names(written_so, unit, tmp_path):
     """It is taken where none is given, and held against one that is."""
     path = written(tmp_path / "a.txt", f"# made up, {written_so}\n" + lines(A))
-    asked = mr.GroundMotion.from_csv(written(tmp_path / "b.txt", lines(A)), unit, dt=0.01)
-    assert mr.GroundMotion.from_csv(path, dt=0.01) == asked
-    assert mr.GroundMotion.from_csv(path, unit, dt=0.01) == asked
+    requested = mr.GroundMotion.from_csv(written(tmp_path / "b.txt", lines(A)), unit, dt=0.01)
+    assert mr.GroundMotion.from_csv(path, dt=0.01) == requested
+    assert mr.GroundMotion.from_csv(path, unit, dt=0.01) == requested
     other = "cm/s2" if unit == "g" else "g"
     with pytest.raises(ValueError, match=rf"unit = '{other}' was given, and .* says {unit}; skip= leaves it out"):
         mr.GroundMotion.from_csv(path, other, dt=0.01)
@@ -217,9 +217,12 @@ def test_variables_of_matlab(tmp_path):
     scipy.io.savemat(path, {"data": np.stack([T, A, -A]), "Fs": 100.0})
     for column, sign in (("data 1", 1), (2, -1)):
         np.testing.assert_array_equal(mr.GroundMotion.from_csv(path, "m/s2", columns=(0, column)).accel, sign * A)
-    for name, said in (("vel", "these are velocities"), ("acc", "one column of accelerations; give its time step dt")):
+    for name, message in (
+        ("vel", "these are velocities"),
+        ("acc", "one column of accelerations; give its time step dt"),
+    ):
         scipy.io.savemat(path, {name: A})
-        with pytest.raises(ValueError, match=rf"a\.mat: .*{said}"):
+        with pytest.raises(ValueError, match=rf"a\.mat: .*{message}"):
             mr.GroundMotion.from_csv(path, "m/s2", dt=0.01 if name == "vel" else None)
 
 
@@ -232,13 +235,13 @@ def test_damaged_files_of_matlab(tmp_path):
         damaged = (
             content[:i] + rng.bytes(2) + content[i + int(rng.integers(3)) :] if rng.random() < 0.7 else content[:i]
         )
-        motion, said = None, f"{tmp_path / 'b.mat'}: "
+        motion, message = None, f"{tmp_path / 'b.mat'}: "
         try:
             motion = mr.GroundMotion.from_csv(written(tmp_path / "b.mat", damaged), "m/s2")
         except ValueError as error:
-            said = str(error)
-        assert said.startswith(f"{tmp_path / 'b.mat'}: ")
-        assert said.isprintable()
+            message = str(error)
+        assert message.startswith(f"{tmp_path / 'b.mat'}: ")
+        assert message.isprintable()
         assert motion is None or np.isfinite(motion.accel).all()
     with pytest.raises(
         ValueError, match=r"c\.at2: a MATLAB file, which GroundMotion\.from_csv reads by its name \.mat"

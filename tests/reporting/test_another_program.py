@@ -58,9 +58,9 @@ class Tables(HTMLParser):
 UNITS = {"": 1, "m": 1, "mm": 1e-3, "kg": 1, "t": 1e3, "kN": 1e3, "s": 1, "%": 1e-2, "m/s²": 1, "kg/m³": 1, "rad": 1}
 
 
-def numbers(said):
+def numbers(message):
     """The numbers of a text in SI units."""
-    found = re.findall(r"(-?\d+(?:\.\d+)?) ?(m/s²|kg/m³|kN|mm|rad|kg|m|t|s|%)?", said)
+    found = re.findall(r"(-?\d+(?:\.\d+)?) ?(m/s²|kg/m³|kN|mm|rad|kg|m|t|s|%)?", message)
     return [float(value) * UNITS[unit] for value, unit in found]
 
 
@@ -123,14 +123,14 @@ def wall_of(cells):
     )
     half = t / 2 - inset
     mass, first = t * h * length * rho, t * h * length * rho * h / 2
-    for said in cells["opening"]:
-        wide, high, sill, *rest = numbers(said)
+    for message in cells["opening"]:
+        wide, high, sill, *rest = numbers(message)
         gone = wide * high * t * rho * (rest[0] if rest else 1)
         mass, first = mass - gone, first - gone * (sill + high / 2)
     bodies = [(mass * G, first / mass, 0.0)]
-    for said in cells.get("added mass 1", []):
-        if numbers(said):
-            added, z, x = numbers(said)
+    for message in cells.get("added mass 1", []):
+        if numbers(message):
+            added, z, x = numbers(message)
             bodies.append((added * G, z, x))
     N, z_N, x_N = numbers(cells["load 1"][0])
     z_H, H = numbers(cells["thrust 1"][0])

@@ -103,8 +103,8 @@ def test_the_verdict_is_repeated_from_what_the_appendix_says(alone):
     path, checks = alone
     cells = {name: first for name, first, *_ in table_of(path, "<b>Seismic action")}
 
-    def number(said):
-        return float(said.split()[0])
+    def number(message):
+        return float(message.split()[0])
 
     site = mr.code_spectrum(
         cells["elastic spectrum"],
@@ -142,8 +142,8 @@ def test_page_one_answers_in_sentences_the_worst_first(alone):
     assert len(rows) == 6
     assert least == sorted(least)
     refused = [verdict for verdict in checks["tied"].verdicts if not verdict.holds]
-    said = first[first.index("With what is proposed") :].split("Least ratio")[0]
-    assert said.count(", SL") == (len(refused) if len(refused) < 3 else 0)
+    message = first[first.index("With what is proposed") :].split("Least ratio")[0]
+    assert message.count(", SL") == (len(refused) if len(refused) < 3 else 0)
 
 
 def masonry_of(count):
@@ -275,17 +275,17 @@ def test_a_check_of_blocks_names_what_moves_and_lists_its_blocks(tmp_path):
     check = mr.mechanism_check(mr.limit_curve(masonry, 1, poses=20), SLV)
     text = read(mr.report(mr.MasonryCase(masonry, 1.0), (), tmp_path / "a.html", checks={"statue": check}))
     assert "what moves" in text
-    for said in ("0.4321; 2", "1889", "1.2345 GN/m³", "0.6543", "2.2345 m/s²"):
-        assert said in text
+    for message in ("0.4321; 2", "1889", "1.2345 GN/m³", "0.6543", "2.2345 m/s²"):
+        assert message in text
 
 
 def test_a_side_stop_that_nobody_gave_is_said_to_be_assumed(tmp_path):
     wall = mr.Block.from_size(0.5, 2.6)
-    for stop, said in ((True, "assumed, not given"), (mr.SideStop(2.6), "not given"), (False, "not given")):
+    for stop, message in ((True, "assumed, not given"), (mr.SideStop(2.6), "not given"), (False, "not given")):
         case = mr.Case(wall, 0.0, 1.0, side_stop=stop)
         path = mr.report(case, (), tmp_path / "a.html", sections={"Note": "Wall."})
         (row,) = (row for row in table_of(path, "<b>What stands") if row[0] == "side walls")
-        assert row[2] == said
+        assert row[2] == message
         assert ("up to 2.6\u00a0m" in row[1]) is isinstance(stop, mr.SideStop)
 
 
@@ -295,8 +295,8 @@ def test_loads_have_a_weight_and_no_inertia_which_the_limits_say(tmp_path, langu
     for effects, names in (((), ""), ((mr.AddedMass(300.0, 6.0),), ""), (BARE[1:], "load 1")):
         case = case_of(effects)
         path = mr.report(case, (), tmp_path / "a.html", sections={"Note": "Wall."}, language=language)
-        said = words("limit_load", names=names.replace("load", words("effect_load")))
-        assert (said in read(path)) is bool(names)
+        message = words("limit_load", names=names.replace("load", words("effect_load")))
+        assert (message in read(path)) is bool(names)
 
 
 def test_a_collapse_of_a_wall_has_its_sizes_and_what_grows(tmp_path):
@@ -305,7 +305,7 @@ def test_a_collapse_of_a_wall_has_its_sizes_and_what_grows(tmp_path):
     other = mr.Case(mr.Block.from_size(0.4, 3.0), 0.0, 1.0)
     path = mr.report(other, (), tmp_path / "a.html", checks={"wind": found}, language="it")
     text = read(path)
-    for said in (
+    for message in (
         "0,5123 m",
         "6,1234 m",
         "1912 kg/m³",
@@ -315,7 +315,7 @@ def test_a_collapse_of_a_wall_has_its_sizes_and_what_grows(tmp_path):
         "2,2223 m",
         "1,2345 kN",
     ):
-        assert said in text
+        assert message in text
     (row,) = (row for row in table_of(path, "<h2>Quanto è sopportato") if row[0] == "parte in moto")
     assert row[1] == "parete"
 
@@ -344,14 +344,14 @@ def test_what_is_driven_has_its_history_and_pairs_have_their_friction(tmp_path):
         ["ground", name, "0.4321"] for name in ("block_1", "block_2")
     ]
     text = read(path)
-    for said in (
+    for message in (
         "on block_1, at (0.0111; 0.5) m",
         "1.2345 MN/m",
         "damping 0.321 kN s/m",
         "kept from turning",
         "as drawn, not at rest",
     ):
-        assert said in text
+        assert message in text
     alike = mr.Masonry(masonry.blocks, k_n=1e9, friction=0.6, pairs=mr.Dry(friction=0.3456, xi=0.0789))
     text = read(mr.report(mr.MasonryCase(alike, 1.0), (), tmp_path / "b.html", sections={"Note": "Blocks."}))
     assert "friction 0.3456, damping ratio 7.89 %" in text
@@ -415,8 +415,8 @@ def test_both_d_0_are_named_where_they_stand(tmp_path):
     assert f"d_0 of the centroid: {dynamic.d_0:.4f} m; over e*" in dynamic.table()
     assert "d_0 of the curve a(d), over e* [m]" in check.table()
     text = read(mr.report(case, runs, tmp_path / "a.html", checks=[check, dynamic], language="it"))
-    for said, d_0 in (
+    for message, d_0 in (
         ("d₀ della curva a(d): spostamento del baricentro", check.d_0),
         ("d₀ del baricentro, senza catene", dynamic.d_0),
     ):
-        assert Words("it").quantity(d_0, "m", 3).replace("\u00a0", " ") in text[text.index(said) :][:160]
+        assert Words("it").quantity(d_0, "m", 3).replace("\u00a0", " ") in text[text.index(message) :][:160]

@@ -114,18 +114,18 @@ IN_ITALIAN = {
 }
 
 
-@pytest.mark.parametrize("said", IN_ITALIAN)
-def test_a_refusal_is_in_the_language_of_its_file(said):
+@pytest.mark.parametrize("complaint", IN_ITALIAN)
+def test_a_refusal_is_in_the_language_of_its_file(complaint):
     with pytest.raises(mr.AssessmentError) as caught:
-        mr.from_toml(text=SITE + IN_ITALIAN[said])
+        mr.from_toml(text=SITE + IN_ITALIAN[complaint])
     assert caught.value.language == "it"
     (line,) = caught.value.lines
-    assert said in line
+    assert complaint in line
     assert str(caught.value) == line
     assert str(pickle.loads(pickle.dumps(caught.value))) == line
     with pytest.raises(mr.AssessmentError) as english:
-        mr.from_toml(text=SITE.replace("'it'", "'en'") + IN_ITALIAN[said])
-    assert said not in str(english.value)
+        mr.from_toml(text=SITE.replace("'it'", "'en'") + IN_ITALIAN[complaint])
+    assert complaint not in str(english.value)
     assert str(english.value).partition(":")[0] == line.partition(":")[0].replace("riga", "line")
 
 
@@ -148,12 +148,12 @@ OF_BLOCKS = {
 }
 
 
-@pytest.mark.parametrize("said", OF_BLOCKS)
-def test_a_refusal_of_blocks_is_in_the_language_of_its_file(said):
+@pytest.mark.parametrize("complaint", OF_BLOCKS)
+def test_a_refusal_of_blocks_is_in_the_language_of_its_file(complaint):
     with pytest.raises(mr.AssessmentError) as caught:
-        mr.from_toml(text=BLOCKS % OF_BLOCKS[said])
+        mr.from_toml(text=BLOCKS % OF_BLOCKS[complaint])
     (line,) = caught.value.lines
-    assert said in line
+    assert complaint in line
     assert "in inglese" not in line
 
 
@@ -172,8 +172,8 @@ def test_a_cause_without_a_text_stays_english_behind_the_key_its_value_and_its_r
         mr.from_toml(text=SITE + WALL + motion)
     (fault,) = caught.value.faults
     assert isinstance(fault.message, Message)
-    said = Words("it").message(Message("{place}: {cause}", place="a.b", cause="no such thing", known=" = 3; x"))
-    assert said == "a.b = 3; x: il valore è rifiutato; in inglese: «no such thing»"
+    complaint = Words("it").message(Message("{place}: {cause}", place="a.b", cause="no such thing", known=" = 3; x"))
+    assert complaint == "a.b = 3; x: il valore è rifiutato; in inglese: «no such thing»"
 
 
 def test_a_message_is_a_text_with_its_values():

@@ -147,7 +147,7 @@ def test_the_first_page_answers(language):
     end = text.index(html.escape(words("checks"), quote=False))
     first = read(text[:end])
     order = ["Façade <7>", "San <b>Rocco</b> & Co", "Does it stand?", words("answer"), words("verdict_ratio")]
-    places = [first.index(said) for said in order]
+    places = [first.index(message) for message in order]
     assert places == sorted(places)
     each = [[verdict for check in of for verdict in check.verdicts] for of in checks().values()]
     ranked = sorted(each, key=lambda verdicts: min(verdict.ratio for verdict in verdicts))
@@ -165,13 +165,13 @@ def test_the_first_page_answers(language):
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_no_name_of_code_is_in_the_text(language):
-    said = read(whole(language)[0])
+    message = read(whole(language)[0])
     names = r"\w+_\w+|\b(?:inf|nan|None|True|False|CALIBRATED|N/m3|kg/m3|m/s2|e[+-]\d\d)\b|\d\.\d+e|[{}]"
-    assert set(re.findall(names, said.replace(MOTION.name, "").replace("_" * 22, ""))) == set()
+    assert set(re.findall(names, message.replace(MOTION.name, "").replace("_" * 22, ""))) == set()
 
 
 @pytest.mark.parametrize(
-    ("language", "said"),
+    ("language", "message"),
     [
         (
             "en",
@@ -190,16 +190,16 @@ def test_no_name_of_code_is_in_the_text(language):
         ),
     ],
 )
-def test_words_of_both_languages(language, said):
+def test_words_of_both_languages(language, message):
     text = read(whole(language)[0])
-    assert [one for one in said if one not in text] == []
+    assert [one for one in message if one not in text] == []
 
 
 def test_an_italian_report_has_no_english_words_nor_points_in_numbers():
-    said = read(whole("it")[0]).replace(MOTION.name, "")
+    message = read(whole("it")[0]).replace(MOTION.name, "")
     words = r"\b(?:the|and|of|with|runs?|wall|height|mass|holds|fails|at rest|overturned)\b"
-    assert re.findall(words, said) == []
-    without = re.sub(r"C8\.[.\d]+|(?:mjrock|MuJoCo|NumPy|SciPy|matplotlib|Python|Apache-|§) ?[.\d]+", "", said)
+    assert re.findall(words, message) == []
+    without = re.sub(r"C8\.[.\d]+|(?:mjrock|MuJoCo|NumPy|SciPy|matplotlib|Python|Apache-|§) ?[.\d]+", "", message)
     assert re.findall(r"\d+\.\d+", without) == []
 
 
@@ -261,8 +261,8 @@ def test_formulae_are_mathml():
 )
 def test_numbers_have_digits_that_count_and_prefixes(value, unit, given, found):
     words = Words("en")
-    said = [words.quantity(value, unit, *digits).replace("\u00a0", " ") for digits in ((), (FOUND,))]
-    assert said == [given, found]
+    message = [words.quantity(value, unit, *digits).replace("\u00a0", " ") for digits in ((), (FOUND,))]
+    assert message == [given, found]
     italian = Words("it").quantity(value, unit).replace("\u00a0", " ")
     assert italian == given.replace(".", ",")
 
@@ -309,10 +309,10 @@ def test_a_check_by_hand_has_the_moments_of_a_wall_that_leans(tmp_path):
     checks = mr.mechanism_check(case, mr.code_spectrum("EC8 type 1", ag=2.0, soil="B"))
     page = mr.report(case, (), tmp_path / "leans.html", checks=checks)
     text = read(page.read_text(encoding="utf-8"))
-    said = re.search(
+    message = re.search(
         r"hinge, x ([\d.]+) m .*weight, W x ([\d.]+) kN m .*thrusts, M (.[\d.]+) kN m", re.sub(r"\s+", " ", text)
     )
-    lever, holding, moment = (float(one.replace("\N{MINUS SIGN}", "-")) for one in said.groups())
+    lever, holding, moment = (float(one.replace("\N{MINUS SIGN}", "-")) for one in message.groups())
     assert lever == pytest.approx(weights @ levers / weights.sum(), rel=5e-3)  # three digits are printed
     assert holding == pytest.approx(weights @ levers / 1e3, rel=5e-3)
     assert moment == pytest.approx(-10.0, rel=5e-3)
@@ -359,8 +359,8 @@ def test_sections_hold_texts_figures_and_tables(tmp_path):
     text = page_of(tmp_path, CASE, answer(), sections=given)
     assert "<h2>Code &lt;SLV&gt;</h2>" in text
     assert "<td>multiplier alpha_0</td><td>0.1300</td><td>C8.7.1.1</td>" in text
-    for said in ("It is linear &amp; not.", f"{curve.median:.3g} ("):
-        assert said in text
+    for message in ("It is linear &amp; not.", f"{curve.median:.3g} ("):
+        assert message in text
     bare = page_of(tmp_path, CASE, answer())
     assert text.count("<img") == bare.count("<img") + 1
     assert text.index("The dynamic runs") < text.index("Code &lt;SLV") < text.index("Appendix")
@@ -487,12 +487,12 @@ def test_a_sketch_names_values_or_arguments():
     case = mr.Case(WALL, 0.0, 1.0, side_stop=mr.SideStop(3.0), effects=EFFECTS)
     figure = mr.plotting.sketch(case)
     texts = "\n".join(text.get_text() for ax in figure.axes for text in ax.texts)
-    for said in ("4.2 m", "0.6 m", "stop 3 m", "breaks at 2 mm", "0.5 kN outwards", "5 kN downwards", "200 kg"):
-        assert said in texts
+    for message in ("4.2 m", "0.6 m", "stop 3 m", "breaks at 2 mm", "0.5 kN outwards", "5 kN downwards", "200 kg"):
+        assert message in texts
     figure = mr.plotting.sketch(case, arguments=True)
     texts = "\n".join(text.get_text() for ax in figure.axes for text in ax.texts)
-    for said in ("Tie(height", "Thrust(height, force)", "Load(", "AddedMass(", "SideStop(top)", "Damper("):
-        assert said in texts
+    for message in ("Tie(height", "Thrust(height, force)", "Load(", "AddedMass(", "SideStop(top)", "Damper("):
+        assert message in texts
 
 
 @pytest.mark.parametrize(

@@ -54,24 +54,25 @@ def words_of(text):
 def test_what_a_plot_function_prints_is_in_the_list(module):
     patterns = [pattern for pattern, _ in drawn_patterns()]
     missing = [
-        said
-        for said in printed(module)
-        if words_of(said) and not any(one.fullmatch(said) or one.fullmatch(said.removesuffix(ENDS)) for one in patterns)
+        message
+        for message in printed(module)
+        if words_of(message)
+        and not any(one.fullmatch(message) or one.fullmatch(message.removesuffix(ENDS)) for one in patterns)
     ]
     assert missing == []
 
 
 def test_the_list_is_read_from_the_source_of_plot_functions():
-    found = [said for module in DRAWING for said in printed(module)]
+    found = [message for module in DRAWING for message in printed(module)]
     assert {"farthest block [mm]", "capacity over demand [-]", "share of walls overturned [-]"} <= set(found)
-    assert len([said for said in found if words_of(said)]) > 15
+    assert len([message for message in found if words_of(message)]) > 15
 
 
 def test_each_text_of_the_list_is_said_in_italian():
     for key in (key for key in texts() if key.startswith("drawn_")):
-        said = Words("en")(key, **dict.fromkeys(re.findall(r"(?<!{){(\w+)}", texts()[key]["en"]), "1.5"))
+        message = Words("en")(key, **dict.fromkeys(re.findall(r"(?<!{){(\w+)}", texts()[key]["en"]), "1.5"))
         expected = Words("it")(key, **dict.fromkeys(re.findall(r"(?<!{){(\w+)}", texts()[key]["it"]), "1,5"))
-        assert ITALIAN.drawn(said) == expected
+        assert ITALIAN.drawn(message) == expected
     assert (
         ITALIAN.drawn("MuJoCo, tie_1\n3 of 17 blocks lie outside")
         == "MuJoCo, catena 2\n3 blocchi su 17 fuori dal disegno"
@@ -126,19 +127,19 @@ def figures(tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"), [("0.55 m", "0,55 m"), ("\u22121.5 kN", "\u22121,5 kN"), ("v1.5 m", "v1.5 m")]
+    ("text", "message"), [("0.55 m", "0,55 m"), ("\u22121.5 kN", "\u22121,5 kN"), ("v1.5 m", "v1.5 m")]
 )
-def test_a_number_with_its_unit_has_the_decimal_mark_of_the_language(text, said):
-    assert ITALIAN.drawn(text) == said
+def test_a_number_with_its_unit_has_the_decimal_mark_of_the_language(text, message):
+    assert ITALIAN.drawn(text) == message
     assert Words("en").drawn(text) == text
 
 
 def test_pictures_of_an_italian_report_have_no_english_word(figures):
     assert len(figures) > 10
-    said = [text.get_text() for figure, own in figures if not own for text in figure.findobj(Text)]
-    assert any("fuori dal disegno" in one for one in said)
-    assert "capacità su domanda [-]" in said
-    assert [one for one in said if set(words_of(one)) & english_words()] == []
+    message = [text.get_text() for figure, own in figures if not own for text in figure.findobj(Text)]
+    assert any("fuori dal disegno" in one for one in message)
+    assert "capacità su domanda [-]" in message
+    assert [one for one in message if set(words_of(one)) & english_words()] == []
 
 
 def test_a_picture_of_the_user_is_drawn_in_italian_and_left_as_it_was(figures):

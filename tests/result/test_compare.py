@@ -90,12 +90,12 @@ def test_different_cases_are_not_compared(two_sided, one_sided, e):
 def test_restitution_under_ground_motion_is_said_to_be_that_of_impacts(wall, contacts, e, comparison):
     case = mr.Case(wall, 0.0, 2.0, motion=mr.GroundMotion.sine(-3.0, 0.6))
     shaken = mr.compare(mr.solve_analytical(case, e), mr.simulate(case, contacts))
-    said = "Under ground motion the restitution is that of single impacts, and none of free rocking."
-    assert said in shaken.table().replace("\n", " ")
+    message = "Under ground motion the restitution is that of single impacts, and none of free rocking."
+    assert message in shaken.table().replace("\n", " ")
     assert "|e| of impact 1 under ground motion" in repr(shaken)
     still = mr.Case(wall, 0.0, 0.1, motion=mr.GroundMotion.sine(-3.0, 0.6))
     assert "|e| of impact 1 under ground motion none for none, RMS" in repr(
         mr.compare(mr.solve_analytical(still, e), mr.simulate(still, contacts))
     )
-    assert said not in comparison.table()
+    assert message not in comparison.table()
     assert "|e| of rebound 1 " in repr(comparison)

@@ -142,8 +142,8 @@ def test_masonry_that_rocks_and_overturns(in_space, solver):
 
 def test_the_message_has_the_rotation_over_alpha():
     case = mr.Case(WALL, 0.0, 1.0, side_stop=False)
-    said = describe(mr.Outcome.TIME_ENDED, case, 1.0, -0.5 * WALL.alpha)
-    assert said == "The wall still rocks at the end of the run (1 s), at 0.5 alpha."
+    complaint = describe(mr.Outcome.TIME_ENDED, case, 1.0, -0.5 * WALL.alpha)
+    assert complaint == "The wall still rocks at the end of the run (1 s), at 0.5 alpha."
     assert "1.2 alpha" in describe(mr.Outcome.OVERTURNED, case, 1.0, 1.2 * WALL.alpha)
 
 

@@ -53,9 +53,9 @@ def test_released_into_strong_dashpots():
 def test_one_that_does_not_close_says_so(one_sided, contacts, monkeypatch):
     mr.simulate(one_sided, contacts, ledger=True)  # silent: warnings are errors here
     monkeypatch.setattr(problem, "RESIDUAL_OF_WALL", -1.0)
-    with pytest.warns(UserWarning, match=r"does not close: .* have no account; lower accuracy = 0.001") as said:
+    with pytest.warns(UserWarning, match=r"does not close: .* have no account; lower accuracy = 0.001") as caught:
         mr.simulate(one_sided, contacts, ledger=True)
-    assert said[0].filename == __file__  # it points at the call
+    assert caught[0].filename == __file__  # it points at the call
 
 
 def test_a_gain_of_a_thousandth_is_the_most():

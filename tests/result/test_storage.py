@@ -280,12 +280,12 @@ def test_xarray_opens_it(path, kind):
 class TestFilesOfOthers:
     """Tables, glTF and VTK have the case, the options, versions and the processor, from which the case is read."""
 
-    def is_right(self, said, found):
-        assert said["mjrock_version"] == mr.__version__
-        assert said["machine"] == found.origin.machine
-        assert said["solver"] == found.solver
-        assert Reader({}).value(said["case"], "case") == found.case
-        origin = Reader({}).value(said["origin"], "origin")
+    def is_right(self, message, found):
+        assert message["mjrock_version"] == mr.__version__
+        assert message["machine"] == found.origin.machine
+        assert message["solver"] == found.solver
+        assert Reader({}).value(message["case"], "case") == found.case
+        origin = Reader({}).value(message["origin"], "origin")
         assert differences(origin, found.origin) == []
 
     def test_csv(self, kind, path):
@@ -424,12 +424,12 @@ class TestRefused:
         with pytest.raises(ValueError, match=r"and not one of Response\.save"):
             mr.load(path)
 
-    @pytest.mark.parametrize(("version", "said"), [(2, "newer format 2.*update mjrock"), (0, "older format 0")])
-    def test_other_formats(self, path, version, said):
+    @pytest.mark.parametrize(("version", "message"), [(2, "newer format 2.*update mjrock"), (0, "older format 0")])
+    def test_other_formats(self, path, version, message):
         answer("theory").save(path)
         with h5py.File(path, "a") as file:
             file.attrs["format_version"] = version
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=message):
             mr.load(path)
 
     def test_changed_numbers(self, path):

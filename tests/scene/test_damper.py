@@ -102,7 +102,7 @@ def test_a_damper_on_masonry():
 
 
 @pytest.mark.parametrize(
-    ("asked", "complaint"),
+    ("requested", "complaint"),
     [
         (lambda: mr.Damper(-1.0, 1e3), "height of the damper = -1 m is outside the valid range 0 to 200 m"),
         (lambda: mr.Damper(1.0, -1e3), "coefficient c of the damper = -1000 N s/m is outside the valid range"),
@@ -112,9 +112,9 @@ def test_a_damper_on_masonry():
         (lambda: mr.solve_analytical(wall_case(), E), "rocking theory has links that only pull"),
     ],
 )
-def test_what_is_refused(asked, complaint):
+def test_what_is_refused(requested, complaint):
     with pytest.raises(ValueError, match=complaint):
-        asked()
+        requested()
 
 
 @pytest.mark.parametrize("rate", [0.25, 30.0])

@@ -232,12 +232,12 @@ def test_what_is_drawn_and_reported():
     case = held_case()
     texts = [text.get_text() for ax in mr.plotting.sketch(case).axes for text in ax.texts]
     assert "friction damper: z = 3 m,\nk = 2 kN/mm, slips at 1.5 kN" in texts
-    asked = [text.get_text() for ax in mr.plotting.sketch(case, arguments=True).axes for text in ax.texts]
-    assert "FrictionDamper(height, stiffness,\nslip_force, length)" in asked
+    requested = [text.get_text() for ax in mr.plotting.sketch(case, arguments=True).axes for text in ax.texts]
+    assert "FrictionDamper(height, stiffness,\nslip_force, length)" in requested
 
 
 @pytest.mark.parametrize(
-    ("asked", "complaint"),
+    ("requested", "complaint"),
     [
         (lambda: mr.FrictionDamper(-1.0, K, F), "height of the friction damper = -1 m is outside the valid range 0 to"),
         (lambda: mr.FrictionDamper(1.0, 0.0, F), "stiffness of the friction damper = 0 N/m is outside the valid range"),
@@ -252,9 +252,9 @@ def test_what_is_drawn_and_reported():
         ),
     ],
 )
-def test_what_is_refused(asked, complaint):
+def test_what_is_refused(requested, complaint):
     with pytest.raises(ValueError, match=complaint):
-        asked()
+        requested()
 
 
 def test_a_model_is_shared_by_what_a_damper_bears_nothing_at():

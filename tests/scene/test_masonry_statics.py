@@ -111,8 +111,8 @@ def test_springs_too_soft_to_stand_on():
 def test_a_stack_without_friction_is_not_told_to_be_stiffer(k_n):
     """Of two level joints one has friction: the upper block slides, and no stiffness keeps it."""
     masonry = columns(2, k_n, friction=lambda joint: 0.7 if "ground" in joint.name else 0.0)
-    said = r"nothing keeps block_1 from sliding, however large k_n is; .* above 0: block_0\|block_1$"
-    with pytest.raises(ValueError, match=said):
+    complaint = r"nothing keeps block_1 from sliding, however large k_n is; .* above 0: block_0\|block_1$"
+    with pytest.raises(ValueError, match=complaint):
         require_standing(masonry)
     require_standing(columns(2, k_n, friction=1e-3))
 
@@ -126,17 +126,17 @@ def test_a_keystone_without_thrust_is_not_told_to_be_stiffer(k_n):
     assert falling(masonry) == ()
     with pytest.raises(
         ValueError, match=r"^no pose of rest was found: key would slide.*limit analysis finds.*press"
-    ) as said:
+    ) as caught:
         require_standing(masonry)
-    assert not re.search(r"raise k_n|however large", str(said.value))
+    assert not re.search(r"raise k_n|however large", str(caught.value))
 
 
 def test_a_brick_that_hangs_over_by_half_tips_and_one_at_the_angle_of_friction_slides():
     """Rigid blocks stand at these limits alone, and neither is held by wedging."""
     low = box(0, 0.4, 0, 0.2, name="low")
-    for over, said in ((0.2, "top would tip, .* more to stand on"), (0.21, "top would fall under the weight$")):
+    for over, complaint in ((0.2, "top would tip, .* more to stand on"), (0.21, "top would fall under the weight$")):
         bricks = mr.Masonry([GROUND, low, box(over, over + 0.4, 0.2, 0.4, name="top")], friction=0.5, k_n=1e9)
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=complaint):
             require_standing(bricks)
     require_standing(mr.Masonry([GROUND, low, box(0.199, 0.599, 0.2, 0.4, name="top")], friction=0.5, k_n=1e9))
     slope = tilted(mr.Masonry([GROUND, box(-0.5, 0.5, 0, 0.2)], friction=math.tan(0.2) * (1 + 1e-9)), 0.2)

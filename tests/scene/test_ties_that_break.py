@@ -216,9 +216,9 @@ def test_a_bar_that_is_drawn_out_too_far_is_warned_of(wall, contacts, e):
     soft = brittle(wall, ultimate=None, strength=2e3, length=0.5)
     case, _ = kicked(wall, soft, 0.6)
     for solve, given in ((mr.solve_analytical, e), (mr.simulate, contacts), (mr.solve_explicit, contacts)):
-        with pytest.warns(UserWarning, match=r"tie_0 was drawn out by .* of its length of 0.5 m") as said:
+        with pytest.warns(UserWarning, match=r"tie_0 was drawn out by .* of its length of 0.5 m") as caught:
             solve(case, given)
-        assert said[0].filename == __file__
+        assert caught[0].filename == __file__
 
 
 @pytest.mark.parametrize("solver", ["analytical", "compliant", "MuJoCo"])

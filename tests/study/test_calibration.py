@@ -139,12 +139,14 @@ def test_a_second_run_carries_on_from_the_store(tmp_path, monkeypatch):
     tasks = [Match(one, mr.Restitution.from_geometry(one.wall.alpha)) for one in combinations(3, 7)]
     first = completed(tasks[:2], tmp_path / "a.sqlite", workers=1)
     assert [row["slenderness"] for row in first] == [task.combination.slenderness for task in tasks[:2]]
-    asked = []
+    requested = []
     original = match.simulate
-    monkeypatch.setattr(match, "simulate", lambda case, *args, **kw: asked.append(case) or original(case, *args, **kw))
+    monkeypatch.setattr(
+        match, "simulate", lambda case, *args, **kw: requested.append(case) or original(case, *args, **kw)
+    )
     again = completed(tasks, tmp_path / "a.sqlite", executor=ThreadPoolExecutor(1))
     assert again[:2] == first
-    assert {case.block for case in asked} == {tasks[2].combination.wall}
+    assert {case.block for case in requested} == {tasks[2].combination.wall}
 
 
 @pytest.mark.slow

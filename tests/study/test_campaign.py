@@ -258,8 +258,10 @@ def test_kill_and_resume(tmp_path):
     expected = table(whole)
     path = tmp_path / "c.sqlite"
     for least in (5, 25):
-        with (tmp_path / "stderr").open("w") as said:
-            run = subprocess.Popen([sys.executable, str(script), str(marks), str(path)], env=ENVIRONMENT, stderr=said)
+        with (tmp_path / "stderr").open("w") as message:
+            run = subprocess.Popen(
+                [sys.executable, str(script), str(marks), str(path)], env=ENVIRONMENT, stderr=message
+            )
         while len(list(marks.glob("done-*"))) < least and run.poll() is None:
             time.sleep(0.02)
         workers = children(run.pid)

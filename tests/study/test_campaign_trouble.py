@@ -142,9 +142,9 @@ def test_labels_that_clash(tmp_path, wall, e, labels, complaint):
     case = mr.Case(wall, 0.01, 1.0)
     tasks = [Square(1, str(tmp_path)), mr.Analysis(case, "analytical", e=e, labels=labels)]
     grid = mr.Grid(lambda **point: mr.Analysis(case, "analytical", e=e), **{n: [v] for n, v in labels.items()})
-    for asked in (tasks, grid):
+    for requested in (tasks, grid):
         with pytest.raises(ValueError, match=complaint):
-            mr.campaign(asked, tmp_path / "c.sqlite", workers=1)
+            mr.campaign(requested, tmp_path / "c.sqlite", workers=1)
         with mr.Store(tmp_path / "c.sqlite") as store:
             assert len(store) == 0
     assert not (tmp_path / "done-1").exists()
@@ -182,10 +182,10 @@ def test_ctrl_c(tmp_path, workers):
     time.sleep(0.3)
     started, workers = time.monotonic(), children(run.pid)
     os.killpg(run.pid, signal.SIGINT)
-    said = run.communicate()[1]
+    message = run.communicate()[1]
     assert time.monotonic() - started < 2
     assert run.returncode == 130
-    closed, interrupted = said.splitlines()
+    closed, interrupted = message.splitlines()
     assert interrupted == f"interrupted: {path}: 2 rows are kept, and the same call carries on from there"
     assert closed.startswith("campaign: 2 of 3 tasks have a row: 2 done, 0 failed (1 time ended) in ")
     assert closed.endswith(", 1 left; the same call carries on")

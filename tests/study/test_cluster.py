@@ -68,9 +68,9 @@ def job(folder, number):
 
 def done(process):
     """What a process has said, once it has ended well."""
-    said = process.communicate(timeout=120)[1]
-    assert process.returncode == 0, said
-    return said
+    message = process.communicate(timeout=120)[1]
+    assert process.returncode == 0, message
+    return message
 
 
 def killed(process, folder, marks):
@@ -108,8 +108,8 @@ def test_an_array_of_jobs_is_joined_and_completed(tmp_path):
     assert {len(path.read_text()) for path in tmp_path.glob("done-*")} <= {1, 2}
     assert sum(len(path.read_text()) for path in tmp_path.glob("done-*")) <= CASES + 1
     (tmp_path / "walls_2.sqlite").rename(tmp_path / "lost.sqlite")
-    said = done(started(tmp_path, sys.executable, "join_jobs.py"))
-    assert f"{CASES} of {CASES} tasks have a row: 8 done" in said
+    message = done(started(tmp_path, sys.executable, "join_jobs.py"))
+    assert f"{CASES} of {CASES} tasks have a row: 8 done" in message
     assert table(tmp_path) == of_one_process(tmp_path)
 
 

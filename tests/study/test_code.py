@@ -60,9 +60,9 @@ def test_its_report_has_its_own_words_and_no_number_that_it_does_not_have(museum
     check = mr.mechanism_check(CASE, SITE, code=museum)
     path = mr.report(CASE, answer, tmp_path / "a.html", checks={"statue": check})
     page = re.sub(r"base64,[^\"]*", "", path.read_text(encoding="utf-8"))
-    said = re.sub(r"<[^>]+>", " ", page)
-    assert [one for one in ("rule 1", "rule 2", "rule 3", "museum of 2024", "stays") if one not in said] == []
-    assert [one for one in ("SLV", "SLC", "SLD", "Circolare", "C8.7", "NTC 2018") if one in said] == []
+    message = re.sub(r"<[^>]+>", " ", page)
+    assert [one for one in ("rule 1", "rule 2", "rule 3", "museum of 2024", "stays") if one not in message] == []
+    assert [one for one in ("SLV", "SLC", "SLD", "Circolare", "C8.7", "NTC 2018") if one in message] == []
     steps = page[page.index("The kinematic check") : page.index("<h2>", page.index("The kinematic check"))]
     # alpha_0, a(d_0) = 0, d = 0.5 d_0, T = 2 pi ..., xi = 5 %
     assert re.findall(r"<mn>(.*?)</mn>", steps) == ["0", "0", "0", "0.5", "0", "2", "5"]
@@ -102,7 +102,9 @@ def test_a_code_of_the_package_has_every_step_in_both_languages(path):
     assert code.languages == ["en", "it"]
     texts = [*code.texts.values(), *(step.text for step in code.steps.values())]
     for text in texts:
-        places = [sorted(name for _, name, _, _ in string.Formatter().parse(said) if name) for said in text.values()]
+        places = [
+            sorted(name for _, name, _, _ in string.Formatter().parse(message) if name) for message in text.values()
+        ]
         assert places[0] == places[1]
 
 

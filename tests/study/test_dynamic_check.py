@@ -52,9 +52,12 @@ def test_one_wall_that_overturns_fails_all():
 
 def test_the_solvers_give_one_verdict():
     """MuJoCo and explicit steps solve the same contacts; theory has a rigid base, 0.3 % of d_0 beside it here."""
-    asked = cases(1, 4.0, mr.Tie(4.0, 2e6, strength=5e3, ultimate=0.05))
-    answers = [[mr.simulate(case, CONTACTS) for case in asked], [mr.solve_explicit(case, CONTACTS) for case in asked]]
-    answers.append([mr.solve_analytical(case, E) for case in asked])
+    requested = cases(1, 4.0, mr.Tie(4.0, 2e6, strength=5e3, ultimate=0.05))
+    answers = [
+        [mr.simulate(case, CONTACTS) for case in requested],
+        [mr.solve_explicit(case, CONTACTS) for case in requested],
+    ]
+    answers.append([mr.solve_analytical(case, E) for case in requested])
     with pytest.warns(
         mr.Implausible, match="1 records, and at least 8 count, more than the 7 .*; natural records, and these are not"
     ):
@@ -82,9 +85,9 @@ def test_beside_the_kinematic_check_and_the_floor_of_the_slv():
     slv = weak.verdicts[1]
     assert slv.capacity / slv.demand == slv.ratio == weak.ground_ratio
     runs = [mr.solve_analytical(one, E) for one in cases(8, 2.5)]
-    said = mr.dynamic_check(runs, natural=True).table(weak)
+    complaint = mr.dynamic_check(runs, natural=True).table(weak)
     names = ("linear kinematic", "nonlinear kinematic", "dynamic, largest run", "dynamic, mean of maxima")
-    assert all(name in said for name in names)
+    assert all(name in complaint for name in names)
 
 
 @pytest.mark.parametrize(
@@ -143,8 +146,8 @@ def shaken(count, peak, way=1):
 @pytest.mark.slow
 def test_masonry_of_one_block_is_checked_as_a_wall():
     """Its push gives half the thickness as d_0, and the maxima are those of the centroid on the same contacts."""
-    asked = shaken(1, 4.0)
-    runs, walls = map(mr.solve_explicit, asked), (mr.solve_explicit(case, CONTACTS) for case in cases(1, 4.0))
+    requested = shaken(1, 4.0)
+    runs, walls = map(mr.solve_explicit, requested), (mr.solve_explicit(case, CONTACTS) for case in cases(1, 4.0))
     with pytest.warns(mr.Implausible, match="requires more"):
         found = mr.dynamic_check([*runs], curve=curve_of(1))
     with pytest.warns(mr.Implausible, match="requires more"):
@@ -156,9 +159,9 @@ def test_masonry_of_one_block_is_checked_as_a_wall():
 
 @pytest.mark.slow
 def test_masonry_from_which_a_block_falls_is_beyond_d_0():
-    asked = shaken(1, 15.0)
+    requested = shaken(1, 15.0)
     with pytest.warns(mr.Implausible, match="requires more"):
-        found = mr.dynamic_check([mr.solve_explicit(case) for case in asked], curve=curve_of(1))
+        found = mr.dynamic_check([mr.solve_explicit(case) for case in requested], curve=curve_of(1))
     assert math.isinf(found.mean)
     assert not found.holds
 
@@ -214,6 +217,6 @@ def test_the_verdict_names_its_way_and_asks_for_the_weaker_one():
         assert f"judged: the centroid of wall along ({way}, 0)" in check.table()
         weaker = [str(one.message) for one in seen if "check that way too" in str(one.message)]
         assert len(weaker) == (by_hand[-way] < by_hand[way])
-        for said in weaker:
-            assert f"{by_hand[way]:.4g} g" in said
-            assert f"along (1, 0) it bears {by_hand[1]:.4g} g" in said
+        for complaint in weaker:
+            assert f"{by_hand[way]:.4g} g" in complaint
+            assert f"along (1, 0) it bears {by_hand[1]:.4g} g" in complaint

@@ -110,11 +110,11 @@ def test_a_tie_that_breaks_bears_nothing_from_there_on():
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("given", "message"),
     [({"to": 0.0}, "to = 0"), ({"to": 0.1, "poses": 1}, "poses = 1"), ({"to": 0.1, "direction": 2}, "direction")],
 )
-def test_refused(given, said):
-    with pytest.raises(ValueError, match=said):
+def test_refused(given, message):
+    with pytest.raises(ValueError, match=message):
         mr.limit_curve(mr.Masonry.stack([mr.Block.from_size(0.6, 1.0)] * 2), **given)
 
 

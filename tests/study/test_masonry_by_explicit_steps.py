@@ -106,7 +106,7 @@ def test_a_report_and_histories(tmp_path):
     case = dataclasses.replace(analysis().case, effects=(tied,))
     path = mr.report(case, answers, tmp_path / "column.html", labels=["stands", "falls"], basis={"k_n": "two cores"})
     text = path.read_text(encoding="utf-8")
-    for said in (
+    for complaint in (
         "Motion of masonry",
         "2 free, 1 fixed",
         "MN/m³",
@@ -114,7 +114,7 @@ def test_a_report_and_histories(tmp_path):
         "holds without slip",
         "The blocks are rigid",
     ):
-        assert said in text
+        assert complaint in text
     assert "block_1 at" in text
     assert text.count("<img") == 4  # the masonry with the tie, as that of the runs is; maxima, histories and ends
     with pytest.raises(ValueError, match=r"responses\[0\] is of masonry, and the case of other masonry"):

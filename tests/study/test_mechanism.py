@@ -45,8 +45,10 @@ def test_ties_at_their_strength_stand_beside_the_slack_ones():
     assert tied.linear == bare.linear
     assert bare.alpha_tied is None is bare.linear_tied
     assert "ties at their strength" not in bare.table()
-    (said,) = (line for line in tied.table().splitlines() if line.startswith("linear SLV, ties at their strength [g]"))
-    assert f"{tied.linear_tied / mr.GRAVITY:.4f}" in said
+    (shown_text,) = (
+        line for line in tied.table().splitlines() if line.startswith("linear SLV, ties at their strength [g]")
+    )
+    assert f"{tied.linear_tied / mr.GRAVITY:.4f}" in shown_text
 
 
 def test_a_record_asks_for_its_largest_displacement_up_to_the_period():
@@ -99,9 +101,9 @@ def test_ties_that_never_break_are_doubted_where_they_make_the_capacity():
 
     with pytest.warns(mr.Implausible, match=r"d_SLC = .* than 0.3 m, .* tie_0 \(ultimate = None\) would still hold"):
         endless = check(strength=120e3)
-    with pytest.warns(mr.Implausible, match="would still hold there|ultimate = 8 m") as said:
+    with pytest.warns(mr.Implausible, match="would still hold there|ultimate = 8 m") as caught:
         assert check(strength=120e3, ultimate=8).states["SLC"].capacity > 0.3
-    assert ["tie_0 (ultimate = 8 m)" in str(one.message) for one in said] == [False, True]
+    assert ["tie_0 (ultimate = 8 m)" in str(one.message) for one in caught] == [False, True]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         drawn_out = check(strength=120e3, ultimate=0.05)

@@ -179,7 +179,7 @@ def test_the_pose_of_a_response_has_supports_and_centroids_without_masses():
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("given", "message"),
     [
         ({"pose": [[0.0, 0.0]]}, "pose"),
         ({"pose": [[0.0, 0.0, 5.73]]}, r"rotation of 5\.73 rad; .* radians"),
@@ -187,8 +187,8 @@ def test_the_pose_of_a_response_has_supports_and_centroids_without_masses():
         ({"pose": [[0.0, 0.0, 0.0]], "associated": False}, "a pose takes associated friction"),
     ],
 )
-def test_what_a_pose_does_not_allow_is_refused(given, said):
-    with pytest.raises(ValueError, match=said):
+def test_what_a_pose_does_not_allow_is_refused(given, message):
+    with pytest.raises(ValueError, match=message):
         mr.collapse_multiplier(wall(), 1, **given)
 
 

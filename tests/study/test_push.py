@@ -362,7 +362,7 @@ def test_local_damping_needs_springs_along_the_faces():
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("given", "complaint"),
     [
         ((0, 0.1), "driver = 0"),
         ((0.5, 0.1), "driver = 0.5"),
@@ -373,8 +373,8 @@ def test_local_damping_needs_springs_along_the_faces():
         ((JACK, np.nan), "not finite"),
     ],
 )
-def test_what_is_wrong_is_named(given, said):
-    with pytest.raises(ValueError, match=said):
+def test_what_is_wrong_is_named(given, complaint):
+    with pytest.raises(ValueError, match=complaint):
         mr.push(panel(0.9), *given)
 
 

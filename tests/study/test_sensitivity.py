@@ -108,9 +108,9 @@ def test_the_base_has_the_defaults_of_build(monkeypatch):
 
 
 def test_of_a_wall_and_resumed(build, tmp_path):
-    asked = {"base": {"duration": 0.5, "scale": 1.5, "sign": -1.0}, "vary": {"scale": [1.5, 1.2], "sign": [-1.0]}}
+    requested = {"base": {"duration": 0.5, "scale": 1.5, "sign": -1.0}, "vary": {"scale": [1.5, 1.2], "sign": [-1.0]}}
     store = tmp_path / "s.sqlite"
-    found = mr.sensitivity(build, store=store, executor=ThreadPoolExecutor(1), **asked)
+    found = mr.sensitivity(build, store=store, executor=ThreadPoolExecutor(1), **requested)
     assert found.values.tolist() == [build(scale).solve().peak_over_alpha for scale in (1.5, 1.2)]
     assert found.governs == "scale"
     assert found.sentence.endswith("alpha, governed by scale")

@@ -49,15 +49,15 @@ def test_a_campaign_that_was_broken_off_says_what_is_left():
 def test_the_command_line(tmp_path):
     mr.campaign([released(0.5)], tmp_path / "walls.sqlite", workers=1)
 
-    def asked(*arguments):
+    def requested(*arguments):
         command = [sys.executable, "-m", "mjrock", *arguments]
         return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
 
-    assert asked("status", "walls.sqlite").stdout.startswith("walls.sqlite: 1 rows, 1 done, 0 failed\n")
-    assert "there is no such campaign" in asked("status", "none.sqlite").stderr
-    assert asked("status", "none.sqlite").returncode == 2
-    assert "invalid choice: 'stat'" in asked("stat").stderr
-    assert asked().returncode == 0
+    assert requested("status", "walls.sqlite").stdout.startswith("walls.sqlite: 1 rows, 1 done, 0 failed\n")
+    assert "there is no such campaign" in requested("status", "none.sqlite").stderr
+    assert requested("status", "none.sqlite").returncode == 2
+    assert "invalid choice: 'stat'" in requested("stat").stderr
+    assert requested().returncode == 0
 
 
 def test_reading_rows_does_not_warn_again_of_what_the_run_has_warned_of(tmp_path):

@@ -44,9 +44,9 @@ def test_virtual_work_and_limit_analysis(bearing, crack):
 def test_a_load_that_no_floor_has_is_named_with_its_range(load):
     """A floor 1.5 m long and twice the thickness wide, of 0.35 to 1.75 m and 100 to 30000 kg/m3."""
     least, most = (mr.GRAVITY * 1.5 * 0.7 * mass for mass in (0.35 * 100, 1.75 * 30_000))
-    with pytest.raises(ValueError, match="load = ") as told:
+    with pytest.raises(ValueError, match="load = ") as caught:
         mr.Masonry.between_floors(WALL, load)
-    assert f"{least:.6g} to {most:.6g} N" in str(told.value)
+    assert f"{least:.6g} to {most:.6g} N" in str(caught.value)
     for within in (least, most):
         strip = mr.Masonry.between_floors(WALL, within * (1 + 1e-9 * (least + most - 2 * within) / most))
         floor = strip.polygons[strip.names.index("floor")]

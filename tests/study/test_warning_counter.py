@@ -42,8 +42,8 @@ def closing(capsys):
 def test_a_campaign_counts_warnings(tmp_path, capsys, where):
     with warnings.catch_warnings(record=True) as shown:
         path = mr.campaign([Warn(i) for i in range(5)], tmp_path / "c.sqlite", **where)
-    said, last = closing(capsys)
-    assert said == "campaign: warned 5 times, first: UserWarning: the number is 0"
+    message, last = closing(capsys)
+    assert message == "campaign: warned 5 times, first: UserWarning: the number is 0"
     assert last.startswith("campaign: 5 of 5 tasks have a row: 5 done")
     assert len(shown) == 1
     with mr.Store(path) as store:
@@ -67,8 +67,8 @@ def test_labels_that_change_nothing_are_said_to(tmp_path, capsys):
     """Points of a grid that are the same task have one row, with the labels of the first."""
     grid = mr.Grid(lambda number, name: Square(number), number=[2, 3], name=["a", "b"])
     path = mr.campaign(grid, tmp_path / "c.sqlite", executor=ThreadPoolExecutor(1))
-    (said, _) = closing(capsys)
-    assert said == (
+    (message, _) = closing(capsys)
+    assert message == (
         "campaign: warned 2 times, first: the case labelled {'number': 2, 'name': 'b'} is that labelled "
         "{'number': 2, 'name': 'a'}, whose row stands for both: they differ in labels alone"
     )

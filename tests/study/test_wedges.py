@@ -159,9 +159,9 @@ def test_sketch_film_and_report_show_the_wedges_once_and_not_the_masses_that_sta
     assert [True for corners in drawn if corners.min(axis=0) == pytest.approx([back, 0.0])] == [True]
     assert section.get_xlim()[0] < back
     answer = mr.solve_analytical(replace(case, theta0=0.01), mr.Restitution(0.95, -0.5))
-    for language, said in (("en", "wedges of side walls"), ("it", "cunei delle pareti laterali")):
+    for language, message in (("en", "wedges of side walls"), ("it", "cunei delle pareti laterali")):
         text = mr.report(case, answer, tmp_path / "a.html", language=language).read_text(encoding="utf-8")
-        assert text.count(said) == 1
+        assert text.count(message) == 1
         assert "wedge" not in text.replace("wedges of side walls", "")
 
 

@@ -49,10 +49,10 @@ def explicit(case):
 @pytest.mark.parametrize("friction", [0.5, 0.6])
 def test_a_block_that_falls_on_a_ramp_slides_at_tan_phi_of_the_pair(friction, solve, in_space):
     """The block that stands has the friction of its joint. MuJoCo lifts what slides by 2 % of its normal force."""
-    asked = []
+    requested = []
 
     def pairs(one, other):
-        asked.append((one, other))
+        requested.append((one, other))
         return mr.Dry(friction=friction, xi=1.0) if (one, other) == ("ramp", "falls") else None
 
     run = solve(mr.MasonryCase(on_a_ramp(pairs, in_space), 0.7, settled=False))
@@ -60,9 +60,9 @@ def test_a_block_that_falls_on_a_ramp_slides_at_tan_phi_of_the_pair(friction, so
     grown = (moved(run)[last] - moved(run)[first]) / (run.t[last] - run.t[first])
     slides = max(0.0, mr.GRAVITY * (math.sin(SLOPE) - friction * math.cos(SLOPE)))
     assert grown == pytest.approx([0.0, slides], abs=0.005 if solve is explicit else 0.02)
-    assert ("ramp", "falls") in asked
-    assert ("ramp", "stands") not in asked
-    assert len(asked) == len(set(asked))
+    assert ("ramp", "falls") in requested
+    assert ("ramp", "stands") not in requested
+    assert len(requested) == len(set(requested))
 
 
 def drop(pairs):
@@ -99,7 +99,7 @@ def test_a_function_that_gives_nothing_changes_nothing(solve):
 
 
 @pytest.mark.parametrize(
-    ("pairs", "error", "said"),
+    ("pairs", "error", "message"),
     [
         (0.3, TypeError, "pairs"),
         (mr.Dry(k_n=1e9), ValueError, r"pairs has k_n; friction, xi, frequency are taken"),
@@ -108,6 +108,6 @@ def test_a_function_that_gives_nothing_changes_nothing(solve):
         (lambda one, other: mr.Dry(points=3), ValueError, "pairs of ramp and falls has points"),
     ],
 )
-def test_what_is_not_friction_and_damping_is_refused(pairs, error, said):
-    with pytest.raises(error, match=said):
+def test_what_is_not_friction_and_damping_is_refused(pairs, error, message):
+    with pytest.raises(error, match=message):
         on_a_ramp(pairs).of_pair(2, 0)

@@ -122,7 +122,7 @@ def test_the_step_follows_from_the_stiffest_contact():
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("given", "message"),
     [
         ({"accuracy": 1e-3}, "accuracy = 0.001 does not go with collisions"),
         ({"coulomb": True}, "coulomb = True does not go"),
@@ -132,8 +132,8 @@ def test_the_step_follows_from_the_stiffest_contact():
         ({"output_step": 5.0}, "output_step = 5 s is outside the valid range"),
     ],
 )
-def test_what_does_not_go_with_collisions_is_refused_by_name(given, said):
-    with pytest.raises(ValueError, match=said):
+def test_what_does_not_go_with_collisions_is_refused_by_name(given, message):
+    with pytest.raises(ValueError, match=message):
         mr.simulate(released(), LAW, **{"collisions": True} | given)
     with pytest.raises(TypeError, match="collisions"):
         mr.simulate(released(), LAW, collisions="yes")
