@@ -7,13 +7,14 @@ DOCS := .venv/.docs
 OLDEST := .venv-oldest
 INSTALLED := out/installed
 CONTACTS := out/contacts
+# No module is compiled to bytecode as it is installed: a run imports few of them.
+PIP := pip install --quiet --no-compile --disable-pip-version-check
 
 .PHONY: demo docs test test-slow test-processors test-oldest test-installed test-contacts mutants lint calibrate models figures robots clean stale
 
 # Tests fill every core with processes. Where threads of BLAS wait for a core, small matrices take up to 200 times longer.
 test test-slow test-processors test-oldest test-installed test-contacts mutants: export OPENBLAS_NUM_THREADS = 1
 # Bytecode is stored: the processes that tests start then need not compile the package again, nor pytest rewrite its tests.
-# pip compiles none (--no-compile): of the modules that it installs a run imports few.
 test test-slow test-processors test-oldest test-installed: export PYTHONDONTWRITEBYTECODE =
 
 demo: $(READY)
@@ -61,7 +62,7 @@ test-installed:
 test-contacts:
 	rm -rf $(CONTACTS)
 	$(PYTHON) -m venv $(CONTACTS)/build
-	$(CONTACTS)/build/bin/python -m pip install --quiet --no-compile --disable-pip-version-check 'hatchling>=1.27'
+	$(CONTACTS)/build/bin/python -m $(PIP) 'hatchling>=1.27'
 	cd packaging/mjcontacts && ../../$(CONTACTS)/build/bin/python -m hatchling build -t wheel -d ../../$(CONTACTS)/files
 	mkdir $(CONTACTS)/tests
 	cp tests/contacts/*.py tests/pairs.py tests/everyday.py $(CONTACTS)/tests
@@ -69,7 +70,7 @@ test-contacts:
 	cp packaging/mjcontacts/pyproject.toml $(CONTACTS)
 	for needs in 'mujoco==3.3.2 numpy==1.26.4' $(if $(OLDEST_ONLY),,'mujoco numpy'); do \
 		$(PYTHON) -m venv --clear $(CONTACTS)/venv && \
-		$(CONTACTS)/venv/bin/python -m pip install --quiet --no-compile --disable-pip-version-check $$needs pytest $(CONTACTS)/files/*.whl && \
+		$(CONTACTS)/venv/bin/python -m $(PIP) $$needs pytest $(CONTACTS)/files/*.whl && \
 		(cd $(CONTACTS) && venv/bin/python -m pytest tests) || exit 1; \
 	done
 
@@ -96,10 +97,10 @@ robots: $(READY) # public robots; PACKAGES=folder of packages that carry their m
 	$(BIN)/python scripts/peers/robots/feet.py --packages $(PACKAGES)
 	$(if $(MJX),$(BIN)/python scripts/peers/robots/mjx_contacts.py --python $(MJX))
 
-$(READY): INSTALL = pip install --quiet --no-compile --disable-pip-version-check
+$(READY): INSTALL = $(PIP)
 $(OLDEST)/.ready: PYTHON = python3.11
 $(OLDEST)/.ready: EXTRA = [test]
-$(OLDEST)/.ready: INSTALL = pip install --quiet --no-compile --disable-pip-version-check uv && \
+$(OLDEST)/.ready: INSTALL = $(PIP) uv && \
 	$(OLDEST)/bin/python -m uv pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct
 
 # An environment whose Python is gone, or that belongs to another folder, is stale and is made anew.
@@ -117,11 +118,11 @@ $(READY) $(OLDEST)/.ready: %/.ready: pyproject.toml $$(STALE)
 	@touch $@
 
 $(TEST): $(READY)
-	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --editable '.[test]'
+	$(BIN)/python -m $(PIP) --editable '.[test]'
 	@touch $@
 
 $(DOCS): $(TEST)
-	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --editable '.[docs]'
+	$(BIN)/python -m $(PIP) --editable '.[docs]'
 	@touch $@
 
 clean:

@@ -67,7 +67,7 @@ def chosen(table: Rows, selection: Integers | Flags) -> Rows:
 
 
 def unsound(table: Rows, endless: tuple[str, ...] = ()) -> Integers:
-    """Numbers of the rows with a number that is not finite, or is NaN where it may be infinite, as the endless may."""
+    """Numbers of the rows with a number that is not finite. Numbers named in `endless` may be infinite, and not NaN."""
     words = as_bytes(table).view(float)
     if np.isfinite(words).all():
         return np.zeros(0, dtype=np.int64)

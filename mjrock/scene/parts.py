@@ -19,17 +19,18 @@ from scipy.sparse import csr_array
 from ..geometry.frames import PLANE, SPACE, Freedom
 from ..problem.masonry.laws.bond import Bond, strengths
 from ..problem.masonry.laws.dry import PairProperties
-from ..problem.masonry.laws.joint_law import LawRows, law_rows
+from ..problem.masonry.laws.joint_law import law_rows
 from ..problem.masonry.laws.own_law import Own
 from ..problem.wall.effect import Effect, LinkLaw
 from ..problem.wall.effects import constant_forces_of, link_effects
 from ..problem.wall.own_link import AppliedLink
 from ..quantities import Array, Flags, Integers, frozen, shown
+from ..rows import Rows, numbers, row_type
 from .masses import mass_diagonals, principal, products_of
 
 GROUND = -1
 """The body of a face or an anchor that belongs to the ground."""
-LAW = np.dtype([(name, float) for name in LinkLaw._fields])
+LAW = row_type(numbers(*LinkLaw._fields))
 """A row with the numbers of the law of a link."""
 
 
@@ -247,7 +248,7 @@ class ContactPoints:
             object.__setattr__(self, name, frozen(np.broadcast_to(np.array(getattr(self, name), dtype=float), (m,))))
 
     @cached_property
-    def law(self) -> LawRows:
+    def law(self) -> Rows:
         """Rows of the law of the contacts, with all its numbers, shape (m,)."""
         springs = {"k": self.k, "c": self.c, "k_s": np.asarray(self.k_s)}
         return law_rows(len(self.k), friction=self.friction, **springs, **self.further)

@@ -47,9 +47,10 @@ from ..geometry.kinematics import (
 from ..geometry.poses import at_rest
 from ..geometry.vectors import Vector, dot, minus, plus, vector
 from ..linear import highest_square, rates_matrix, stiffness_of_springs, sum_of_pair_matrices, summed
-from ..problem.masonry.laws.joint_law import LawRows, law_rows, resting, stored, tangent_stiffness
+from ..problem.masonry.laws.joint_law import law_rows, resting, stored, tangent_stiffness
 from ..problem.masonry.laws.own_law import OwnSprings
 from ..quantities import GRAVITY, Array, Flags, Integers, frozen
+from ..rows import Rows
 from .masses import coupling
 from .pattern import PairPattern
 
@@ -183,7 +184,7 @@ class Potential:
     own_springs: OwnSprings | None = None
 
     @cached_property
-    def law(self) -> LawRows:
+    def law(self) -> Rows:
         """Rows of the law of contacts and ties, of which a tie has the spring alone, shape (m + t,)."""
         ties = law_rows(len(self.structure.ties.k), k=self.structure.ties.k)
         return np.append(self.structure.places.law, ties).view(np.recarray)

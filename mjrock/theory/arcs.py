@@ -342,9 +342,9 @@ def rock(case: Case, restitutions: Callable[[int], Array], least_energy: float, 
     """
     law = RockingLaw.from_case(case)
     rules = Rules(case.one_sided, least_energy, (NYSTROEM * rtol) ** 0.25 / law.frequency, case.duration)
-    clocks = rows(CLOCK, 1, theta=case.theta0, omega=case.omega0, side=case.direction)
+    at_rest = case.release_energy == 0
+    clocks = rows(CLOCK, 1, theta=case.theta0, omega=case.omega0, side=case.direction, at_rest=at_rest)
     clock = clocks[0]
-    clock.at_rest = case.release_energy == 0
     for _ in range(3):  # from slack to taut to yielding to taut
         update_states(Toe.from_case(case, case.direction), law.ties, case.theta0, not case.released_outwards)
     room, parts = ArcRoom.empty(restitutions(CHUNK // 4)), []

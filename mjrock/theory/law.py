@@ -15,13 +15,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..compiled import inlined
 from ..problem.ground.motion import GroundMotion
 from ..problem.wall.case import Case
 from ..problem.wall.restoring_moment import TiePull, pulled
 from ..quantities import GRAVITY, Array, Integers
+from ..rows import Rows, numbers, row_type
 from ..scene.course import instants_of, last_before
 
 SMALL = 0.05
@@ -82,14 +82,14 @@ class WallTies(NamedTuple):
         plastic: elongation that each tie has yielded [m], shape (t,).
     """
 
-    pulls: NDArray[np.void]
+    pulls: Rows
     state: Integers
     plastic: Array
 
     @classmethod
     def from_case(cls, case: Case) -> WallTies:
         """The ties of a case."""
-        pulls = np.array([*case.pulls], dtype=[(name, float) for name in TiePull._fields]).view(np.recarray)
+        pulls = np.array([*case.pulls], dtype=row_type(numbers(*TiePull._fields)))
         return cls(pulls, np.full(len(pulls), SLACK), np.zeros(len(pulls)))
 
 

@@ -23,7 +23,7 @@ from ...compiled import by_type, inlined
 from ...geometry.vectors import dot, no_spin, plus, put, read, scaled
 from ...problem.masonry.laws.joint_law import normal_force, stored
 from ...problem.masonry.laws.own_law import OF_K_N, Own
-from ...problem.wall.user_law import ANSWERS, OF_DAMPING, OF_DISSIPATED, OF_ENERGY, OF_LOST, OF_STRESS, ROOM, layout
+from ...problem.wall.user_law import ANSWERS, OF_DAMPING, OF_DISSIPATED, OF_ENERGY, OF_LOST, OF_STRESS, ROOM, row_of
 from ...quantities import GRAVITY, Array, Flags, Integers
 from ...rows import Fields, Row, Rows, chosen, integers, joined, numbers, rows
 from ...scene.scene import Scene
@@ -44,7 +44,7 @@ NO_CLOSING = 1e-20
 """Closing below which the spring of a line is not changed [m]."""
 SIGNATURE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_double, ctypes.c_double)
 ERRORS_OF_LAWS: list[Exception] = []
-"""What own laws that run as plain Python have raised in this run."""
+"""The first error that an own law, run as plain Python, has raised in this run."""
 AS_PYTHON = "laws"
 """Value of MJROCK_INTERPRET with which own laws run as plain Python in compiled loops."""
 
@@ -71,14 +71,15 @@ def function_of(kind: Any) -> Any:
         from .own_calls import compiled_text
 
         return compiled_text(kind)
-    plain, row = kind.answering(), layout(kind)
+    plain = kind.answering()
 
     def text(values: int, closing: float, rate: float) -> None:
         room = np.ctypeslib.as_array(ctypes.cast(values, ctypes.POINTER(ctypes.c_double)), (ROOM,))
         try:
-            plain(room[: row.itemsize // 8].view(row).view(np.recarray)[0], closing, rate)
+            plain(row_of(kind, room), closing, rate)
         except Exception as error:  # nothing can be raised through the loops, which end where a number is not finite
-            ERRORS_OF_LAWS.append(error)
+            if not ERRORS_OF_LAWS:
+                ERRORS_OF_LAWS.append(error)
             room[OF_STRESS] = math.nan
 
     return SIGNATURE(text)

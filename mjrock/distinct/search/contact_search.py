@@ -23,7 +23,7 @@ import numpy as np
 from ...compiled import for_types_of
 from ...problem.wall.rest_geometry import RestGeometry
 from ...quantities import Array, Flags, Integers
-from ...rows import chosen, joined, rows, unsound
+from ...rows import Rows, chosen, joined, rows, unsound
 from ...scene.scene import Scene
 from ..rotation import rotations
 from ..rows import MAY_BE_INFINITE
@@ -261,9 +261,7 @@ class ContactSearch:
             block_name, other_name = (self.names[int(block[place])] for block in (places.face, places.other))
             raise ArithmeticError(f"the contact of {block_name} and {other_name}")
         if left_joints.any():
-            for name in ("k", "c", "friction", "shear_state", "shear_force", "push", "dashpot_force", "depth", "rate"):
-                joints[name][left_joints] = 0.0
-            joints["margin"][left_joints] = np.inf  # no step takes such a line again
+            _clear_lines(joints, left_joints)
         self._keep(kept, places, number, new.slack, share)
         lines = joined(joints, chosen(others, kept), new.rows)
         grown = {type(bonded_law): bonded_law.with_search_lines(count, kept, added) for bonded_law, added in law_rows}
@@ -314,6 +312,13 @@ class ContactSearch:
         arms = places.place - poses.drawn[blocks] - poses.moved[blocks]
         sides = Sides(self.blocks.body[blocks], arms, places.normal)
         return shares_within(sides, law, system.bodies, h / OF_STABLE_STEP)
+
+
+def _clear_lines(lines: Rows, gone: Flags) -> None:
+    """Leave nothing to lines of joints that found contacts replace. No step takes them again."""
+    for name in ("k", "c", "friction", "shear_state", "shear_force", "push", "dashpot_force", "depth", "rate"):
+        lines[name][gone] = 0.0
+    lines["margin"][gone] = np.inf
 
 
 def _rolling_limits(geometry: RestGeometry) -> Array:

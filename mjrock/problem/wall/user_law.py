@@ -20,6 +20,7 @@ from typing import Any, ClassVar, NamedTuple, TypeVar
 import numpy as np
 
 from ...quantities import Array, keep, keep_declared, require_real
+from ...rows import Row, numbers, row_type
 
 OfUser = TypeVar("OfUser")
 
@@ -140,7 +141,13 @@ def _bytecode(method: object) -> object:
 def layout(kind: Any) -> np.dtype[np.void]:
     """The row of a law, which its methods take for `self`."""
     names = (*ANSWERS, *kind.given, *(field.name for field in fields(kind)), *kind.memory)
-    return np.dtype([(name, float) for name in names])
+    return row_type(numbers(*names))
+
+
+def row_of(kind: Any, values: Array) -> Row:
+    """The numbers of a law, shape (ROOM,), as its row. What is written into one is in the other."""
+    row = layout(kind)
+    return values[: row.itemsize // 8].view(row)[0]
 
 
 class Answer(NamedTuple):
@@ -191,11 +198,6 @@ class AppliedLaw:
         values[len(ANSWERS) : len(ANSWERS) + len(known)] = known
         return values
 
-    def row(self, values: Array) -> Any:
-        """The numbers of a law as a row, in which they have names."""
-        kind = layout(self.kind)
-        return values[: kind.itemsize // 8].view(kind).view(np.recarray)[0]
-
     def answer(self, u: float, rate: float = 0.0, values: Array | None = None, *, remembers: bool = True) -> Answer:
         """What it answers at a closing or elongation [m] and its rate [m/s], as plain Python, and what it then
         remembers in a row, if anything.
@@ -203,7 +205,7 @@ class AppliedLaw:
         Raises:
             TypeError, ValueError: where a method fails, or gives no finite number.
         """
-        row = self.row(self.values if values is None else values)
+        row = row_of(self.kind, self.values if values is None else values)
         try:
             with np.errstate(all="ignore"):  # what is not finite is refused below
                 _plain_answering(self.kind, remembers)(row, u, rate)

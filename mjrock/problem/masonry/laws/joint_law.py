@@ -18,14 +18,13 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....compiled import compiled, inlined
 from ....quantities import Array, Flags
+from ....rows import Rows, numbers, row_type, rows
 
 LawRow = Any
 """Anything with the numbers of the law by name: a row of compiled steps, a row of `law_rows`, or a `Law`."""
-LawRows = NDArray[np.void]
 
 
 class Law(NamedTuple):
@@ -49,16 +48,13 @@ EXTENSIVE = ("k", "c", "k_s", "k_excess")
 """Numbers of the law that a part of the area of a line has in proportion. It has the others as they are."""
 INTENSIVE = tuple(name for name in Law._fields if name not in EXTENSIVE)
 """Those others: the friction, and the further numbers of a `Dry`, for which masonry has no keyword."""
-LAW_ROW = np.dtype([(name, float) for name in Law._fields])
+LAW_ROW = row_type(numbers(*Law._fields))
 """A row with the numbers of the law."""
 
 
-def law_rows(count: int, **columns: Array) -> LawRows:
+def law_rows(count: int, **columns: Array) -> Rows:
     """Rows of the law with these columns, and zeros in the others, shape (count,)."""
-    table = np.zeros(count, dtype=LAW_ROW)
-    for name, values in columns.items():
-        table[name] = values
-    return table.view(np.recarray)
+    return rows(LAW_ROW, count, **columns).view(np.recarray)
 
 
 @inlined
@@ -128,7 +124,7 @@ def stored_along(row: LawRow, square: float) -> float:
     return energy
 
 
-def resting(law: LawRows, gap: Array, bonded: Flags) -> tuple[Array, Array]:
+def resting(law: Rows, gap: Array, bonded: Flags) -> tuple[Array, Array]:
     """Force along the normal [N] of contacts at rest, and the energy in their springs [J], shape (m,) each, from their
     rows of the law and their gaps [m].
 
@@ -140,6 +136,6 @@ def resting(law: LawRows, gap: Array, bonded: Flags) -> tuple[Array, Array]:
 
 
 @compiled
-def _resting(law: LawRows, gap: Array, force: Array, energy: Array) -> None:
+def _resting(law: Rows, gap: Array, force: Array, energy: Array) -> None:
     for i in range(len(gap)):
         force[i], energy[i] = normal_force(law[i], gap[i], 0.0), stored(law[i], gap[i])

@@ -12,12 +12,13 @@ from typing import Annotated, Any, NamedTuple, TypedDict, TypeVar
 import numpy as np
 
 from ....quantities import Array, Integers, Within, declared, named, require_kind, shown, within_ranges
+from ....rows import Rows
 from ...damping.contacts import AnyLaw
 from ..blocks.joints import Joint
 from ..blocks.joints_in_space import SpaceJoint
 from .bond import Bond
 from .dry import NONE_FURTHER, AnyPairs, Dry, Mortar, Properties
-from .joint_law import LawRows, law_rows
+from .joint_law import law_rows
 from .own_law import Own, OwnLaw
 
 AnyJoint = Joint | SpaceJoint
@@ -252,7 +253,7 @@ class JointTable(NamedTuple):
                 bond.require_fit(joint.name, *numbers)
         return table
 
-    def laws(self, joint: Integers, **numbers: Array) -> LawRows:
+    def laws(self, joint: Integers, **numbers: Array) -> Rows:
         """Rows of the law of lines, see `law_rows`.
 
         Args:
